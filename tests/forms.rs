@@ -52,9 +52,9 @@ fn what_is_right_passes_in_every_legal_form() {
         assert!(!selection.formulas.is_empty(), "{}: in no formula", form.name);
         let report = run_selection(&selection, std::slice::from_mut(&mut subject), &options, &mut Silent)
             .expect("the device does not fail");
-        let failing = report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some());
+        let failing = report.groups.iter().filter(|group| group.totals.failed > 0 || !group.problems.is_empty());
         wrong.extend(failing.map(|group| {
-            let problem = group.problem.as_deref().unwrap_or_default();
+            let problem = group.problem().unwrap_or_default();
             format!("{}: {} in {}, {} failed; {problem}", form.name, group.id, group.stage, group.totals.failed)
         }));
     }

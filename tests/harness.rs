@@ -5,7 +5,7 @@ mod shader_bugs;
 
 use lightmeter::adapters;
 use lightmeter::document::event::Silent;
-use lightmeter::document::run::Totals;
+use lightmeter::document::report::Totals;
 use lightmeter::options::Options;
 use lightmeter::run::{run, run_selection};
 use lightmeter::select::catalogue;

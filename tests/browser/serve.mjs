@@ -64,7 +64,7 @@ async function aRunIsShownAndItsReportIsKept() {
   assert.equal(report.adapters[0].backend, "webgpu");
   assert.equal(report.totals.failed, 0);
   // The server has ended; what it gave stays.
-  for (const [link, file, holds] of [["#report", "lightmeter.html", "<!DOCTYPE html>"], ["#json", "lightmeter.json", "lightmeter.run/1"]]) {
+  for (const [link, file, holds] of [["#report", "lightmeter.html", "<!DOCTYPE html>"], ["#json", "lightmeter.json", "lightmeter.report/2"]]) {
     const [download] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
     assert.equal(download.suggestedFilename(), file);
     const text = readFileSync(await download.path(), "utf8");

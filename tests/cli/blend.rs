@@ -77,7 +77,7 @@ fn a_page_is_made_of_a_run() {
     assert_eq!(picture.matches("<rect").count(), 1 + 3 * 225 + 7);
     std::fs::write(run, "{\"schema\": \"lightmeter.list/1\"}").expect("a file can be written");
     for (file, message) in
-        [(run, "schema is `lightmeter.list/1`; expected lightmeter.run/1"), ("/nowhere", "cannot read /nowhere")]
+        [(run, "schema is `lightmeter.list/1`; expected lightmeter.report/2"), ("/nowhere", "cannot read /nowhere")]
     {
         let output = lightmeter(&["page", "blend", file]);
         assert!(code(&output) == 2 && stderr(&output).contains(message), "{}", stderr(&output));

@@ -8,11 +8,10 @@ use lightmeter::document::bench::recommendation::Recommendation;
 use lightmeter::document::effects::EffectsDocument;
 use lightmeter::document::eval::{EvalAnswer, EvalRequest};
 use lightmeter::document::frame::FrameDocument;
-use lightmeter::document::gate::GateReport;
 use lightmeter::document::list::{CasesDocument, FormulasDocument, ListedCases, ListedDomain};
 use lightmeter::document::pack::Manifest;
 use lightmeter::document::protocol::ProtocolLine;
-use lightmeter::document::run::{Examined, Report};
+use lightmeter::document::report::{Examined, Report};
 use lightmeter::document::selftest::SelftestDocument;
 use lightmeter::document::show::{ShowDocument, ShownAnswer};
 use lightmeter::document::special::SpecialReport;
@@ -26,11 +25,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// What `lightmeter schema` prints and `docs/schemas/` has, but for the scene.
-const NAMES: [&str; 20] = [
+const NAMES: [&str; 19] = [
     "mistakes",
-    "run",
+    "report",
     "special",
-    "gate",
     "identify",
     "pack",
     "protocol",
@@ -68,9 +66,10 @@ fn again<T: Document>(text: &[u8]) -> (T, Value) {
     (read, written)
 }
 
-/// The schema of a name such as `lightmeter.run/1`, as the command prints it.
+/// The schema of a name such as `lightmeter.report/2`, as the command prints it.
 fn schema(name: &str) -> Value {
-    let name = name.strip_prefix("lightmeter.").and_then(|name| name.strip_suffix("/1")).expect("a name of version 1");
+    let name =
+        name.strip_prefix("lightmeter.").and_then(|name| name.rsplit_once('/')).expect("a name with a version").0;
     super::json(&["schema", name])
 }
 
@@ -189,9 +188,10 @@ fn a_pack_and_a_gate_are_read_again() {
     let (manifest, _) = again::<Manifest>(&manifest);
     assert!(!manifest.formulas.is_empty() && !manifest.scenes.is_empty() && !manifest.files.is_empty());
     let args = ["gate", pack.to_str().expect("UTF-8"), answers.to_str().expect("UTF-8"), "--format", "json"];
-    let (report, _) = again::<GateReport>(&lightmeter(&args).stdout);
-    assert!(!report.failures.is_empty() && !report.problems.is_empty() && report.totals.skipped > 0);
-    assert_eq!(report.choice, manifest.choice);
+    let (report, _) = again::<Report>(&lightmeter(&args).stdout);
+    let renderer = report.renderer.as_ref().expect("who was asked");
+    assert!(!report.failures.is_empty() && !renderer.problems.is_empty() && report.totals.skipped > 0);
+    assert_eq!(report.compared_by.map(|by| by.choice), Some(manifest.choice));
 }
 
 #[test]
@@ -359,7 +359,7 @@ fn a_document_that_departs_from_its_schema_is_told() {
     let changes: [Change; 5] = [
         ("no done", |document| drop(document.as_object_mut().and_then(|all| all.remove("done")))),
         (": more is too much", |document| document["more"] = 1.into()),
-        ("/schema: ", |document| document["schema"] = "lightmeter.run/1".into()),
+        ("/schema: ", |document| document["schema"] = "lightmeter.report/2".into()),
         ("/seconds: ", |document| document["seconds"] = "1 s".into()),
         ("/statistics/worst: ", |document| document["statistics"]["worst"]["error"] = "much".into()),
     ];

@@ -151,17 +151,19 @@ fn a_baseline_that_says_what_cannot_be_is_refused() {
     for (edit, says) in [
         (
             &(|report: &mut Value| {
-                report["groups"][0]["not_passed"]["failed"] = vec!["random/0..18446744073709551615"].into();
+                report["groups"][0]["by_case"]["not_passed"]["failed"] = vec!["random/0..18446744073709551615"].into();
             }) as &dyn Fn(&mut Value),
             "cases did not pass of",
         ),
         (&|report: &mut Value| report["groups"] = Value::Array(vec![]), "it contains no results to compare with"),
-        (&|report: &mut Value| report["groups"][0]["asked"] = 1.into(), "its totals count"),
+        (&|report: &mut Value| report["groups"][0]["by_case"]["asked"] = 1.into(), "its totals count"),
         (
             &|report: &mut Value| {
                 let again = report["groups"][0].clone();
-                for count in ["asked", "verdicts", "indeterminate"] {
-                    report["totals"][count] = (2 * report["totals"][count].as_u64().expect("a count")).into();
+                for sums in ["totals", "by_case"] {
+                    for (_, count) in report[sums].as_object_mut().expect("counts") {
+                        *count = (2 * count.as_u64().expect("a count")).into();
+                    }
                 }
                 report["groups"].as_array_mut().expect("a list").push(again);
             },
@@ -177,7 +179,7 @@ fn a_baseline_that_says_what_cannot_be_is_refused() {
     refused(&["gate", &pack, &answers, "--baseline", &baseline], "field `groups` stands there twice");
     // Words that are not ASCII, and controls, are words like others.
     let baseline = with(&|report| {
-        report["groups"][0]["not_passed"]["failed"] = vec!["größer\u{1b}[2J..é\u{202e}"].into();
+        report["groups"][0]["by_case"]["not_passed"]["failed"] = vec!["größer\u{1b}[2J..é\u{202e}"].into();
         report["groups"][0]["id"] = "\n::error::é".into();
     });
     let output = lightmeter(&["gate", &pack, &answers, "--baseline", &baseline]);

@@ -108,7 +108,7 @@ fn all_pixels_together_tell_what_none_shows_alone() {
     let flat = run("bias-flat", 1.002, "scene/flat");
     let bias = &flat["image"]["bias"];
     assert_eq!((&flat["failed"], &flat["failed_groups"]), (&0.into(), &1.into()), "{flat}");
-    assert!(flat["problem"].as_str().is_some_and(|said| said.contains("to one side")), "{flat}");
+    assert!(flat["problems"][0]["says"].as_str().is_some_and(|said| said.contains("to one side")), "{flat}");
     assert!(bias["factor"].as_f64().is_some_and(|factor| (factor - 1.002).abs() < 0.0005), "{bias}");
     // What the accuracy rules leave to a highlight of a high power explains as much: it is told, and fails nothing.
     let legal = run("bias-legal", 1.003, "scene/missed-highlight");

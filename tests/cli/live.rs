@@ -35,7 +35,9 @@ fn what_fails_is_told_first_with_its_cause_and_counted_once() {
     let output = lightmeter(&[&args[..], &["--format", "json"]].concat());
     let report: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
     assert!(stderr(&output).contains("✗ fog/linear on "), "{}", stderr(&output));
-    let named = |group: &Value| group["id"] == "fog/linear" && group["mistakes"][0] == "fog-from-the-eye";
+    let named = |group: &Value| {
+        group["id"] == "fog/linear" && group["diagnosis"]["explanations"][0]["mistakes"][0] == "fog-from-the-eye"
+    };
     assert!(report["groups"].as_array().is_some_and(|groups| groups.iter().any(named)), "{report}");
     let group = |report: &Value| {
         let groups = report["groups"].as_array().expect("an array").clone();
@@ -44,7 +46,7 @@ fn what_fails_is_told_first_with_its_cause_and_counted_once() {
             .find(|group| group["id"] == "fog/linear" && group["stage"] == "compute")
             .expect("it is there")
     };
-    let explanation = group(&report)["explanation"].to_string();
+    let explanation = group(&report)["diagnosis"].to_string();
     assert!(explanation.contains("linear fog begins at the eye"), "{explanation}");
     let alone = json(&["run", "fog/linear", "--cases", "512", "--shaders", dir, "--format", "json"]);
     for count in ["cases", "verdicts", "failed", "passed", "indeterminate"] {
@@ -64,7 +66,7 @@ fn values_that_are_legal_one_by_one_and_wrong_together_fail() {
         json(&["run", "lighting/specular-blinn", "--shaders", dir.to_str().expect("UTF-8"), "--format", "json"]);
     for group in report["groups"].as_array().expect("an array") {
         assert_eq!(group["failed"], 0, "{group}");
-        assert!(group["problem"].to_string().contains("as if shininess were"), "{group}");
+        assert!(group["problems"].to_string().contains("as if shininess were"), "{group}");
     }
     assert_eq!(report["totals"]["failed_groups"], 2, "{}", report["totals"]);
 }

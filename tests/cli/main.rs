@@ -124,7 +124,7 @@ fn a_run_in_json_has_what_others_build_upon() {
         return;
     }
     let report = json(&["run", "fog/linear", "attenuation", "--cases", "100", "--format", "json"]);
-    assert_eq!(report["schema"], "lightmeter.run/1");
+    assert_eq!(report["schema"], "lightmeter.report/2");
     assert_eq!((report["seed"].as_u64(), report["profile"].as_str()), (Some(1), Some("wgsl")));
     assert!(report["seconds"].as_f64().is_some() && report["adapters"][0]["backend"].is_string());
     for total in

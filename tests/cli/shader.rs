@@ -79,8 +79,12 @@ fn each_example_is_judged_and_its_mistake_named() {
         let groups = report["groups"].as_array().expect("a list");
         assert_eq!(groups.len(), 2, "{file}: compute and fragment");
         for group in groups {
-            let found: Vec<&str> =
-                group["mistakes"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+            let found: Vec<&str> = group["diagnosis"]["explanations"][0]["mistakes"]
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter_map(Value::as_str)
+                .collect();
             assert_eq!(found, *named, "{file}: {group}");
         }
     }

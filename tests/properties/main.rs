@@ -12,6 +12,7 @@ mod interpolation;
 mod ladder;
 mod lighting;
 mod scene;
+mod shards;
 mod soundness;
 mod stability;
 mod technique;
@@ -28,8 +29,6 @@ fn wide(v: [f32; 3]) -> Vec3<f64> {
 macro_rules! family {
     ($name:literal, $rows:literal) => {
         #[test]
-        #[ignore = "long: ./x campaign long"]
-        #[ignore = "long: ./x campaign long"]
         #[ignore = "long: ./x campaign long"]
         fn the_gpu_agrees() {
             if lightmeter_tests::needs::lacks_driver() {

@@ -161,7 +161,7 @@ fn stable_forms_keep_their_claims_and_naive_forms_fail_on_every_adapter() {
     let both_sided = |member: &Member| member.spec.hard.iter().filter(|hard| hard.naive.is_some()).count();
     let cases: usize = stable(&catalogue()).map(both_sided).sum();
     assert_eq!(report.stability.len(), cases * 2 * subjects.len(), "each case in two stages of every adapter");
-    assert!(report.groups.iter().all(|group| group.totals.failed == 0 && group.problem.is_none()));
+    assert!(report.groups.iter().all(|group| group.totals.failed == 0 && group.problems.is_empty()));
 }
 
 /// The built-in shaders with every stable form's function calling that of its naive form.
@@ -206,7 +206,7 @@ fn each_stable_form_with_the_naive_one_in_its_place_is_found_out() {
         let of_group = || report.groups.iter().filter(|found| found.id == *group && found.stage != "fixed-function");
         assert_eq!(of_group().count(), 2 * subjects.len(), "{group} in two stages of every adapter");
         for found in of_group() {
-            let problem = found.problem.as_deref().unwrap_or_default();
+            let problem = found.problem().unwrap_or_default();
             assert!(
                 problem.contains("unstable at"),
                 "{group} as {naive} on {}, {}: {problem}",

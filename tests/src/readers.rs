@@ -9,10 +9,10 @@ use lightmeter::arithmetic::profile::PROFILES;
 use lightmeter::document::bench::BenchDocument;
 use lightmeter::document::eval::EvalRequest;
 use lightmeter::document::event::Stop;
-use lightmeter::document::gate::GateReport;
 use lightmeter::document::pack::Choice;
-use lightmeter::document::run::Report;
+use lightmeter::document::report::Report;
 use lightmeter::document::{Document as _, special::SpecialReport};
+use lightmeter::faults::Mistakes;
 use lightmeter::files::{lines, shown};
 use lightmeter::filter::Filter;
 use lightmeter::gate::answer::{self, Line};
@@ -153,19 +153,24 @@ fn protocol(bytes: &[u8]) {
 }
 
 fn baseline_gate(bytes: &[u8]) {
-    in_file("baseline-gate.json", bytes, |path| accepted(Baseline::of_gate(path)));
-    if let Some(report) = utf8(bytes).and_then(|text| accepted(GateReport::read(text))) {
-        let mut out = String::new();
-        let style = report::gate::GateStyle { level: Level::Verbose, ..Default::default() };
-        report::gate::text(&report, &style, &mut out).expect("a string takes all");
-        said(out);
-        report::junit::of_gate(&report).expect("any report is XML");
-        commands(&github::of_gate(&report));
-    }
+    in_file("baseline-gate.json", bytes, |path| accepted(Baseline::read(path, true)));
+    result(bytes);
 }
 
 fn baseline_run(bytes: &[u8]) {
-    in_file("baseline-run.json", bytes, |path| accepted(Baseline::of_run(path)));
+    in_file("baseline-run.json", bytes, |path| accepted(Baseline::read(path, false)));
+}
+
+/// A result in every form that is text.
+fn result(bytes: &[u8]) -> Option<Report> {
+    let report = utf8(bytes).and_then(|text| accepted(Report::read(text)))?;
+    let style = text::Style { timing: true, level: Level::Verbose, ..text::Style::default() };
+    let mut out = String::new();
+    text::write(&report, style, &mut out).expect("a string takes all");
+    said(out);
+    junit::to_string(&report).expect("any report is XML");
+    commands(&github::annotations(&report));
+    Some(report)
 }
 
 /// Commands of a CI system are those that we mean.
@@ -178,15 +183,8 @@ fn commands(text: &str) {
 }
 
 fn runs(bytes: &[u8]) {
-    let Some(report) = utf8(bytes).and_then(|text| accepted(Report::read(text))) else { return };
-    let detail = text::Detail::Families;
-    let mut out = String::new();
-    text::write(&report, text::Style { detail, timing: true, is_told: false, level: Level::Verbose }, &mut out)
-        .expect("a string takes all");
-    said(out);
-    junit::to_string(&report).expect("any report is XML");
-    commands(&github::of_run(&report));
-    accepted(merge(vec![("one".into(), report.clone()), ("two".into(), report)]));
+    let Some(report) = result(bytes) else { return };
+    accepted(merge(vec![("one".into(), report.clone()), ("two".into(), report)], &Mistakes));
 }
 
 fn sweeps(bytes: &[u8]) {

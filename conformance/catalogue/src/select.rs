@@ -73,6 +73,17 @@ impl Member {
         }
     }
 
+    /// Whether the formula has a case.
+    #[must_use]
+    pub fn has(&self, case: CaseRef) -> bool {
+        match case {
+            CaseRef::Hard(place) => place < self.spec.hard.len(),
+            CaseRef::Near(place, k) => place < self.spec.hard.len() && k < self.near(),
+            CaseRef::Boundary(k) => k < self.boundary(),
+            CaseRef::Random(_) => true,
+        }
+    }
+
     /// The case of that id, if it is one of this formula's.
     #[must_use]
     pub fn case(&self, id: &str) -> Option<CaseRef> {

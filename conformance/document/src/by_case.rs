@@ -1,6 +1,7 @@
 //! What a report says by cases, beside the counts of verdicts: of subjects that are asked case by case, and wherever a run is compared
 //! with another one.
 
+use crate::count::counters;
 use crate::pack::Choice;
 use crate::{Number, Word};
 use schemars::JsonSchema;
@@ -8,30 +9,40 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// What became of a group's cases, each of which has a verdict for each scalar output.
+counters! {
+    /// Counts of cases, each of which has a verdict for each scalar output.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+    pub struct CaseTotals {
+        /// Cases that were asked.
+        pub asked: u64,
+        /// Cases that the renderer does not declare, and that were not asked.
+        pub not_asked: u64,
+        /// Every verdict passed, or permits anything.
+        pub passed: u64,
+        /// Failed.
+        pub failed: u64,
+        /// Of them, those whose answer could not be judged.
+        pub unjudged: u64,
+        /// Of them, those at which the renderer ended or hung.
+        pub broken: u64,
+        /// Failed as is expected.
+        pub expected_failures: u64,
+        /// Skipped.
+        pub skipped: u64,
+        /// Of them, those of which nobody declared that they would be.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        pub undeclared: u64,
+        /// Never answered.
+        pub missing: u64,
+    }
+}
+
+/// What became of a group's cases.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct CaseCounts {
-    /// Cases that were asked.
-    pub asked: u64,
-    /// Cases that the renderer does not declare, and that were not asked.
-    pub not_asked: u64,
-    /// Every verdict passed, or permits anything.
-    pub passed: u64,
-    /// Failed.
-    pub failed: u64,
-    /// Of them, those whose answer could not be judged.
-    pub unjudged: u64,
-    /// Of them, those at which the renderer ended or hung.
-    pub broken: u64,
-    /// Failed as is expected.
-    pub expected_failures: u64,
-    /// Skipped.
-    pub skipped: u64,
-    /// Of them, those of which nobody declared that they would be.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub undeclared: u64,
-    /// Never answered.
-    pub missing: u64,
+    /// How many of them there are of each fate.
+    #[serde(flatten)]
+    pub totals: CaseTotals,
     /// The largest error of a case that passes.
     pub error_passing: Number,
     /// The mean error of the cases that pass.
@@ -53,7 +64,8 @@ impl CaseCounts {
     /// Whether something fails that is not expected to, or was not answered.
     #[must_use]
     pub const fn is_failed(&self) -> bool {
-        self.failed > self.expected_failures || self.missing > 0 || self.undeclared > 0
+        let CaseTotals { failed, expected_failures, missing, undeclared, .. } = self.totals;
+        failed > expected_failures || missing > 0 || undeclared > 0
     }
 }
 

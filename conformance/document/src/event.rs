@@ -1,7 +1,7 @@
 //! What a run tells while it goes on, for whoever listens: it need not end before something is known of it. And how it is told to
 //! end before its time.
 
-use crate::run::{Failure, Group, Interrupted};
+use crate::report::{Failure, Group, Interrupted};
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

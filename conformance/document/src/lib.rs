@@ -5,13 +5,13 @@
 pub mod adapters;
 pub mod bench;
 pub mod by_case;
+mod count;
 pub mod effects;
 mod error;
 pub mod eval;
 pub mod event;
 pub mod explained;
 pub mod frame;
-pub mod gate;
 mod hash;
 pub mod identify;
 pub mod list;
@@ -20,7 +20,7 @@ pub mod mistakes;
 mod number;
 pub mod pack;
 pub mod protocol;
-pub mod run;
+pub mod report;
 pub mod selftest;
 pub mod show;
 pub mod special;
@@ -58,6 +58,18 @@ pub enum ReadError {
         /// What has that schema.
         what: &'static str,
     },
+    /// It is of an earlier version.
+    #[error(
+        "it is of an earlier version, `{found}`; expected {schema}, {what}: judge once more by the same command, which writes that"
+    )]
+    Earlier {
+        /// The schema that it names.
+        found: &'static str,
+        /// The schema that stands in its place.
+        schema: &'static str,
+        /// What has that schema.
+        what: &'static str,
+    },
     /// A field is missing, or is not what it should be.
     #[error("not {1}: {0}")]
     Field(String, &'static str),
@@ -67,6 +79,15 @@ pub enum ReadError {
     /// It was changed after it was written.
     #[error("its checksum does not hold")]
     Checksum,
+}
+
+/// Schemas of earlier versions, and what stands in their place.
+const EARLIER: [(&str, &str); 2] = [("lightmeter.run/1", report::SCHEMA), ("lightmeter.gate/1", report::SCHEMA)];
+
+/// `1 case`, `12 cases`.
+#[must_use]
+pub fn cases(count: u64) -> String {
+    if count == 1 { "1 case".into() } else { format!("{} cases", thousands(count)) }
 }
 
 /// What a command writes as a whole. The code that writes and reads it is made here, once, and not in each room that does.
@@ -102,6 +123,11 @@ fn read<T: Document + DeserializeOwned>(json: &str) -> Result<T, ReadError> {
         wrong(error.to_string(), T::WHAT)
     })?;
     if value["schema"] != T::SCHEMA {
+        if let Some((found, schema)) =
+            EARLIER.into_iter().find(|(found, by)| value["schema"] == *found && *by == T::SCHEMA)
+        {
+            return Err(ReadError::Earlier { found, schema, what: T::WHAT });
+        }
         let found = value["schema"].as_str().map_or_else(|| "none".into(), |name| format!("`{name}`"));
         return Err(ReadError::Schema { found, schema: T::SCHEMA, what: T::WHAT });
     }
@@ -151,18 +177,36 @@ documents! {
     bench::BenchDocument: bench::SCHEMA, "the JSON of `lightmeter bench --format json`";
     bench::recommendation::Recommendation: bench::recommendation::SCHEMA, "the JSON of `lightmeter bench --recommend`";
     effects::EffectsDocument: effects::SCHEMA, "the JSON of `lightmeter effects --format json`";
-    gate::GateReport: gate::SCHEMA, "the JSON of `lightmeter gate --format json`";
     mistakes::MistakesDocument: mistakes::SCHEMA, "the JSON of `lightmeter mistakes --format json`";
     identify::IdentifyDocument: identify::SCHEMA, "the JSON of `lightmeter identify --format json`";
     list::CasesDocument: list::CASES, "the JSON of `lightmeter list --format json`";
     list::FormulasDocument: list::FORMULAS, "the JSON of `lightmeter list --formulas --format json`";
     pack::Manifest: pack::SCHEMA, "the manifest of `lightmeter pack`";
-    run::Report: run::SCHEMA, "the JSON of `lightmeter run --format json`";
     selftest::SelftestDocument: selftest::SCHEMA, "the JSON of `lightmeter selftest --format json`";
     show::ShowDocument: show::SCHEMA, "the JSON of `lightmeter show --format json`";
     special::SpecialReport: special::SCHEMA, "the JSON of `lightmeter special --format json`";
     special::record::SpecialRecord: special::record::SCHEMA, "a record of `lightmeter special --record`";
     sweep::presets::PresetsDocument: sweep::presets::SCHEMA, "the list of ready-made sweeps";
+}
+
+/// A shard's is read by programs alone, and has no spaces.
+impl Document for report::Report {
+    const SCHEMA: &'static str = report::SCHEMA;
+    const WHAT: &'static str = "the JSON of `run`, `gate` or `merge` with `--format json`";
+
+    fn to_json(&self) -> serde_json::Result<String> {
+        let is_shard = self.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
+        let json = if is_shard { serde_json::to_string(self)? } else { serde_json::to_string_pretty(self)? };
+        Ok(json + "\n")
+    }
+
+    fn read(json: &str) -> Result<Self, ReadError> {
+        read(json)
+    }
+
+    fn schema() -> Schema {
+        schema::<Self>()
+    }
 }
 
 /// A sweep takes hours, so that it is signed by a checksum over all else.

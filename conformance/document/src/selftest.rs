@@ -1,7 +1,7 @@
 //! The JSON of `selftest`.
 
 use crate::Word;
-use crate::run::Interrupted;
+use crate::report::Interrupted;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! The JSON of `show`: a case of a formula, a probe of a special value, or a pixel of a scene.
 
 pub use crate::explained::{MistakenStep, ShownMistake, ShownStep};
-use crate::run::Examined;
+use crate::report::Examined;
 use crate::special::{ProbeResult, Skipped};
 use crate::{Number, Word};
 use schemars::JsonSchema;

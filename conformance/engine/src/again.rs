@@ -1,6 +1,6 @@
 //! The same cases asked once more: an answer that changes is no answer.
 
-use lightmeter_document::run::Report;
+use lightmeter_document::report::Report;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_judge::image::file::StoredImage;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};

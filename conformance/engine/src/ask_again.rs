@@ -13,7 +13,7 @@ use crate::turn::{CHUNK, Turn, cases_of, scene_of};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::Observer;
-use lightmeter_document::run::Report;
+use lightmeter_document::report::Report;
 
 /// What was answered, by subject, and of formulas by stage.
 pub(crate) enum Noted {

@@ -5,7 +5,7 @@ use crate::rows::Rows;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
 use lightmeter_catalogue::special::Probe;
-use lightmeter_document::run::{Cost, EffectsCost};
+use lightmeter_document::report::{Cost, EffectsCost};
 use lightmeter_scene::along::Along;
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::effects::Called;

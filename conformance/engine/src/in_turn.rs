@@ -25,7 +25,7 @@ use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{Failure, Group, Report};
+use lightmeter_document::report::{Failure, Group, Report};
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -257,7 +257,9 @@ impl<'a, 'r> InTurn<'a, 'r> {
             Err(error) => Err(error),
         };
         let report = &mut *self.report;
-        let (mut groups, failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
+        let (mut groups, mut failures) = (std::mem::take(&mut report.groups), std::mem::take(&mut report.failures));
+        let is_asked = self.subjects.iter().any(|subject| subject.asked().is_some());
+        failures.iter_mut().for_each(|failure| failure.rerun = self.options.again(failure, is_asked));
         expect_problems(&mut groups, &mut report.expectations);
         find_sources(&mut groups, self.subjects);
         tell(&groups, &failures, false, self.observer);
@@ -379,8 +381,7 @@ impl<'a, 'r> InTurn<'a, 'r> {
         }
         for group in &mut report.groups[first..] {
             if let Some(unstable) = stability::problem(&report.stability, &group.id, &group.adapter, &group.stage) {
-                group.problem =
-                    Some(group.problem.take().map_or(unstable.clone(), |problem| format!("{problem}; {unstable}")));
+                group.problems.push(unstable);
                 group.totals.failed_groups = 1;
             }
         }

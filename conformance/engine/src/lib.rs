@@ -5,6 +5,7 @@ mod again;
 mod ask_again;
 pub mod blend_unit;
 pub mod device;
+mod diagnosed;
 pub mod evaluate;
 mod expected;
 pub mod image;

@@ -7,9 +7,10 @@ use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::cases::Partial;
 use lightmeter_catalogue::cases::blend::Samples;
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_catalogue::scene::select::size;
 use lightmeter_catalogue::select::{Held, Member, Shard};
 use lightmeter_document::event::Stop;
-use lightmeter_document::run::{BoundVariable, Report};
+use lightmeter_document::report::{BoundVariable, Failure, Report};
 use lightmeter_judge::cases::ExpectedFailure;
 use lightmeter_judge::diagnose::Diagnose;
 use lightmeter_judge::formula::Judging;
@@ -53,6 +54,8 @@ pub struct Options {
     pub code: Code,
     /// What to add to a command that runs one case again.
     pub rerun: String,
+    /// The command that asks a renderer for a case, but for the case's id; nothing where its answers are in files.
+    pub ask: Option<String>,
     /// Who is asked which mistake explains what fails; `None` for nobody.
     pub diagnose: Option<&'static dyn Diagnose>,
     /// Whether to stop.
@@ -61,6 +64,8 @@ pub struct Options {
     pub expected: Vec<ExpectedFailure>,
     /// Whether the report says what became of each case, so that another run can be compared with it. Of renderers it always does.
     pub counts_cases: bool,
+    /// Whether a shard's report has samples of its groups, by which the whole is diagnosed.
+    pub samples_kept: bool,
     /// How often all is asked. An answer that changes is unstable.
     pub runs: u64,
     /// What the code under test gives of formulas, where that is not all.
@@ -137,11 +142,29 @@ impl Options {
             adapter: &subject.identity.name,
             known: &subject.known,
             profile: self.profile,
-            rerun: &self.rerun,
             seed: self.seed,
             expected: &self.expected,
             counts_cases: self.counts_cases || subject.asked().is_some(),
         }
+    }
+
+    /// Whether groups are reported with what a shard keeps of them.
+    #[must_use]
+    pub fn keeps_samples(&self) -> bool {
+        self.samples_kept && self.shard != Shard::WHOLE
+    }
+
+    /// The command that judges a failing case once more; empty where there is none.
+    #[must_use]
+    pub fn again(&self, failure: &Failure, is_asked: bool) -> String {
+        let Failure { id, adapter, .. } = failure;
+        let target = failure.blended_on().map_or_else(String::new, |target| format!(" --target {target}"));
+        if is_asked {
+            return self.ask.as_ref().map_or_else(String::new, |ask| format!("{ask}{target} {id}"));
+        }
+        let size = size(&self.filter, self.size).filter(|_| id.starts_with("scene/"));
+        let size = size.map_or_else(String::new, |size| format!(" --size {size}"));
+        format!("lightmeter run '{id}' --adapter {adapter}{target}{size}{}", self.rerun)
     }
 
     /// A run of everything as it is without any option.
@@ -160,10 +183,12 @@ impl Options {
             profile: PROFILES[0],
             code,
             rerun: String::new(),
+            ask: None,
             diagnose: None,
             stop: Stop::default(),
             expected: vec![],
             counts_cases: false,
+            samples_kept: true,
             runs: 1,
             adapted: vec![],
         }

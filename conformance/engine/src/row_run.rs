@@ -2,6 +2,7 @@
 
 use crate::again::{Digests, UNASKED, digest_of_values, number};
 use crate::device::DeviceError;
+use crate::diagnosed::{GroupRows, is_shader};
 use crate::options::Options;
 use crate::rows::Rows;
 use crate::subject::{Compiled, Job, Subject};
@@ -9,14 +10,13 @@ use lightmeter_catalogue::cases::{Spec, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::gate::cases;
-use lightmeter_document::run::{Group, Report, Totals};
+use lightmeter_document::report::{Diagnosis, Group, GroupSample, Report, Totals};
 use lightmeter_judge::cases::Unanswered;
 use lightmeter_judge::chunk::{self, Chunk};
-use lightmeter_judge::diagnose::{Cause, Row, Told};
+use lightmeter_judge::diagnose::Told;
 use lightmeter_judge::formula::{Judging, RowPlace, RowSample, RowStanding};
+use lightmeter_judge::packed::packed;
 use lightmeter_judge::tally::KEPT_FAILURES;
-use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -252,22 +252,28 @@ impl<'a> RowRun<'a> {
                     {
                         told
                     }
-                    _ => told(self.members, &standing, *stage, subject, options),
+                    _ => self.told(&standing, *stage, subject, options),
                 };
                 report.timing.diagnose += clock.elapsed().as_secs_f64();
                 let by = options.judging(subject);
                 let mut group = self.group(&standing, *stage, told.clone(), &by);
                 group.seconds = seconds;
+                group.sample = options.keeps_samples().then(|| sampled(self.members, &standing));
                 group.skip_reason = work.as_ref().err().map(|reason| (*reason).into());
                 report.groups.push(group);
-                let kept = if *stage == Stage::Answer { usize::MAX } else { KEPT_FAILURES };
-                report.failures.extend(standing.failures(self.members, *stage, &by).into_iter().take(kept));
+                report.failures.extend(standing.failures(self.members, *stage, &by).into_iter().take(KEPT_FAILURES));
                 standing.cases.note(&mut report.expectations);
                 let RowStanding { wrong, right, .. } = standing;
                 before = is_shader(*stage).then_some((wrong, right, told));
             }
         }
         self.compiled
+    }
+
+    fn told(&self, standing: &RowStanding, stage: Stage, subject: &Subject, options: &Options) -> Told {
+        let RowStanding { failing, wrong, right, .. } = standing;
+        let rows = GroupRows { members: self.members, stage, failing, wrong, right };
+        rows.told(options.diagnose, &subject.known.granted(options.profile), options.seed)
     }
 
     /// The group of a stage's verdicts.
@@ -277,92 +283,37 @@ impl<'a> RowRun<'a> {
         let name_of = |place: &RowPlace| self.members[place.member].case_id(place.case);
         let id = group_id(&self.members[0].spec, stage);
         let counts = by.counts_cases.then(|| standing.cases.told(self.members, id));
-        let unjudged = counts.as_ref().map_or(0, |counts| counts.unjudged);
-        let mut found = told.explanation;
-        if let Some(Cause { says, .. }) = found.as_mut().filter(|_| unjudged > 0) {
-            *says += &format!("; besides, {} were not answered by values", cases(unjudged));
-        }
-        let (explanation, cause, mistakes) = Cause::parts(found);
+        let unjudged = counts.as_ref().map_or(0, |counts| counts.totals.unjudged);
+        let diagnosis = told.diagnosis.map(|found| Diagnosis { unjudged, ..found });
         Group {
             totals: Totals { failed_groups: u64::from(problem.is_some()), ..tally.totals },
             error_ulp_max: Number(tally.error_max),
             margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
             worst: tally.worst.as_ref().map(|(_, place)| name_of(place)),
             worst_answer: standing.worst_answer(self.members, stage, by),
-            explanation,
-            cause,
-            mistakes,
-            problem,
+            diagnosis,
+            problems: problem.into_iter().collect(),
             by_case: counts,
             ..Group::new(id.into(), by.adapter.to_owned(), stage.name())
         }
     }
 }
 
+/// What a shard keeps of a group's rows.
+fn sampled(members: &[&Member], standing: &RowStanding) -> GroupSample {
+    GroupSample {
+        formulas: members.iter().map(|member| member.spec.id.clone()).collect(),
+        failing: (0..members.len()).map(|place| standing.failing.get(&place).copied().unwrap_or_default()).collect(),
+        random: standing.tally.random.into(),
+        wrong: packed(&standing.wrong),
+        right: packed(&standing.right),
+        stores: None,
+    }
+}
+
 /// The id of the group that a formula is judged in: of a renderer, each formula is a group.
 pub(crate) fn group_id(spec: &Spec, stage: Stage) -> &str {
     if stage == Stage::Answer { &spec.id } else { spec.group() }
-}
-
-/// Failing formulas of a group that are diagnosed: those that fail most often.
-const MOST_DIAGNOSED: usize = 16;
-
-/// The mistake that explains the failing rows of a stage; if none does, the systematic error that all rows show together. In a group of
-/// several formulas, those that fail most often are diagnosed one by one, and the mistake that explains most of them is told.
-fn told(members: &[&Member], standing: &RowStanding, stage: Stage, subject: &Subject, options: &Options) -> Told {
-    let (wrong, right) = (standing.wrong.rows(), standing.right.rows());
-    let Some(diagnose) = options.diagnose else { return Told::default() };
-    // A rasteriser or a depth test has no parameters that could be slightly off, so a systematic error is only looked for in shaders.
-    if wrong.is_empty() && (members.len() > 1 || !is_shader(stage)) {
-        return Told::default();
-    }
-    let mut failing: Vec<(usize, u64)> = standing.failing.iter().map(|(member, count)| (*member, *count)).collect();
-    failing.sort_unstable_by_key(|(member, count)| (Reverse(*count), *member));
-    let profile = subject.known.granted(options.profile);
-    let told_of = |(place, count): (usize, u64)| {
-        let member = members[place];
-        let rows = [&wrong, &right].map(|rows| of_member(member, place, rows, options.seed));
-        Told::of(diagnose, member, [&rows[0], &rows[1]], count, &profile)
-    };
-    if members.len() == 1 || failing.is_empty() {
-        return told_of(failing.first().copied().unwrap_or_default());
-    }
-    failing.truncate(MOST_DIAGNOSED);
-    let mut causes: Vec<Cause> = failing.iter().map(|of| told_of(*of).explanation.unwrap_or_default()).collect();
-    let alike = |cause: &Cause| {
-        let same = causes.iter().filter(|other| !cause.mistakes.is_empty() && other.mistakes == cause.mistakes);
-        same.count()
-    };
-    // Of those that explain as many, the first: it fails most often.
-    let shared: Vec<usize> = causes.iter().map(alike).collect();
-    let best = (0..causes.len()).max_by_key(|&place| (shared[place], Reverse(place))).unwrap_or_default();
-    let Cause { says, cause, mistakes } = causes.swap_remove(best);
-    let mut says = format!("{}: {says}", members[failing[best].0].spec.id);
-    if shared[best] > 0 && shared.len() > 1 {
-        let (same, others) = (shared[best] - 1, shared.len() - 1);
-        says += &match (same, others) {
-            (0, 1) => "; it does not explain the other formula that fails".to_owned(),
-            (1, 1) => "; it also explains the other formula that fails".to_owned(),
-            _ => format!("; it also explains {same} of the {others} formulas that fail next most often"),
-        };
-    }
-    Told { explanation: Some(Cause { says, cause, mistakes }), ..Told::default() }
-}
-
-const fn is_shader(stage: Stage) -> bool {
-    matches!(stage, Stage::Compute | Stage::Fragment | Stage::Answer)
-}
-
-/// The rows of one formula, by its place among the group's, with their inputs.
-fn of_member<'a>(member: &Member, place: usize, rows: &[((usize, CaseRef), &'a [f32])], seed: u64) -> Vec<Row<'a>> {
-    let draws = member.draws(seed);
-    let row = |&((_, case), values): &((usize, CaseRef), &'a [f32])| {
-        let mut inputs = Vec::with_capacity(member.spec.input_len());
-        draws.inputs(case, &mut inputs);
-        (inputs, values, case)
-    };
-    // A hard case is one of its own formula alone.
-    rows.iter().filter(|((of, _), _)| *of == place).map(row).collect()
 }
 
 /// The rows of a chunk, as a stage takes them.

@@ -23,7 +23,7 @@ use lightmeter_catalogue::cases::blend;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{Selected, Shard};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{BlendPromise, Report};
+use lightmeter_document::report::{BlendPromise, Report};
 use lightmeter_judge::blend_unit::policy::{InterfacePromise, PROMISES};
 use lightmeter_judge::stability::UNSTABLE;
 use lightmeter_scene::blend::Equation;
@@ -97,9 +97,7 @@ pub fn run_selection(
         }
         Ok(())
     })?;
-    for group in &report.groups {
-        report.totals.add(&group.totals);
-    }
+    report.sum_up();
     report.totals.unexpected_passes +=
         report.deviations.iter().filter(|deviation| !deviation.still_needed).count() as u64;
     if options.shard == Shard::WHOLE {

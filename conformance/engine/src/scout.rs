@@ -11,7 +11,7 @@ use crate::under_way::{is_over, tell};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer, Silent};
-use lightmeter_document::run::Report;
+use lightmeter_document::report::Report;
 use std::collections::VecDeque;
 
 /// Random cases of a group that are scouted, besides its hard cases; of a group of many formulas, one of each at least.
@@ -110,8 +110,11 @@ impl Scouts<'_> {
         self.compiled.insert(id.to_owned(), run.finish(subjects, self.options, &mut self.report));
         for group in &mut self.report.groups[groups..] {
             // With this few cases only a single wrong value tells anything.
-            group.problem = None;
+            group.problems.clear();
             group.totals.failed_groups = 0;
+        }
+        for failure in &mut self.report.failures[failures..] {
+            failure.rerun = self.options.again(failure, false);
         }
         tell(&self.report.groups[groups..], &self.report.failures[failures..], true, observer);
         Ok(())

@@ -5,7 +5,7 @@ use crate::renderer::AskedRenderer;
 use crate::rows::Rows;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::Member;
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::cases::Answers;
 use lightmeter_judge::devices::Known;

@@ -8,8 +8,8 @@ use lightmeter_catalogue::scene;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
-use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::run::{Group, Totals};
+use lightmeter_document::by_case::{CaseCounts, CaseTotals};
+use lightmeter_document::report::{Group, Totals};
 
 /// Cases of a chunk.
 pub(crate) const CHUNK: usize = 1 << 14;
@@ -87,7 +87,11 @@ pub(crate) fn not_asked(id: String, stage: &'static str, cases: u64, reason: Str
     Group {
         totals: Totals { cases, skipped: cases, ..Totals::default() },
         skip_reason: Some(reason.clone().into()),
-        by_case: Some(CaseCounts { not_asked: cases, reason: Some(reason), ..CaseCounts::default() }),
+        by_case: Some(CaseCounts {
+            totals: CaseTotals { not_asked: cases, ..CaseTotals::default() },
+            reason: Some(reason),
+            ..CaseCounts::default()
+        }),
         ..Group::new(id, subject.identity.name.clone(), stage)
     }
 }

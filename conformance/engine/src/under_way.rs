@@ -3,7 +3,7 @@
 use crate::device::DeviceError;
 use crate::options::Options;
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{Failure, Group, Interrupted, Report};
+use lightmeter_document::report::{Failure, Group, Interrupted, Report};
 
 /// Tells each group with its failures.
 pub(crate) fn tell(groups: &[Group], failures: &[Failure], is_scouted: bool, observer: &mut dyn Observer) {

@@ -17,7 +17,7 @@ use lightmeter_catalogue::select::{CaseRef, Member, Random, Selected};
 use lightmeter_catalogue::special as special_values;
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::event::Silent;
-use lightmeter_document::run::{DeviationUse, Report, Totals};
+use lightmeter_document::report::{DeviationUse, Report, Totals};
 use lightmeter_document::special::ProbeResult;
 
 /// The first segment of the ids.

@@ -3,13 +3,14 @@
 use super::common::{in_common, share};
 use super::concerned::concerned;
 use super::evidence::{EXCLUDED, Fit, Foretold, Right, bits_left, fit, is_wrong};
-use super::explanation::{Diagnosis, Explanation, is_equal, rank, sentence};
+use super::explanation::{FormulaDiagnosis, TriedMistake, is_equal, rank, told};
 use super::factor::{self, Scaled};
 use super::fault::Concerned;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::Member;
+use lightmeter_document::report::{Diagnosis, FailingOutput, Telling};
 use lightmeter_judge::diagnose::Answered;
 use lightmeter_judge::telling;
 
@@ -45,7 +46,7 @@ const PAIR_PROBES: usize = 8;
 /// evidence. Pairs, parameters, and mistakes with a parameter are tried where no single
 /// mistake explains every failing case.
 #[must_use]
-pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Diagnosis {
+pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> FormulaDiagnosis {
     let spec = &member.spec;
     let fits = |row: &&Answered<'_>| row.inputs.len() == spec.input_len() && row.values.len() == spec.output_len();
     let failing: Vec<Answered<'_>> = rows.iter().filter(fits).filter(|row| row.is_wrong).copied().collect();
@@ -71,27 +72,21 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Di
         let best = &explanations[0];
         !is_equal(best, other) && !best.faults.iter().all(|fault| other.faults.contains(fault))
     });
-    let telling = next.and_then(|next| trial.telling(&explanations[0], next));
-    let sentence = match explanations.first() {
-        None if !failing.is_empty() => unexplained(member, profile, &failing, &passing),
-        _ => sentence(failing.len(), &explanations),
+    let telling = next.and_then(|next| Some((next, trial.telling(&explanations[0], next)?)));
+    let told = told(&explanations);
+    let place_of =
+        |next: &TriedMistake| told.iter().position(|(place, _)| std::ptr::eq(next, &raw const explanations[*place]));
+    let telling = telling.and_then(|(next, case)| Some(Telling { case, next: place_of(next)?, shown: None }));
+    let diagnosis = Diagnosis {
+        failing: failing.len() as u64,
+        looked_at: failing.len() as u64,
+        in_common: if told.is_empty() { in_common(member, profile, &failing, &passing) } else { vec![] },
+        outputs: trial.outputs(explanations.first()),
+        explanations: told.into_iter().map(|(_, one)| one).collect(),
+        telling,
+        ..Diagnosis::default()
     };
-    let told = next.zip(telling.as_ref());
-    let sentence = match told {
-        Some((next, case)) => format!("{sentence}; {case} tells it from the next best: {}", next.says),
-        None => sentence,
-    };
-    Diagnosis { failing: failing.len(), passing: passing.len(), sentence, explanations, telling }
-}
-
-/// That nothing explains the failing cases, with what they have in common.
-fn unexplained(member: &Member, profile: &Profile, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> String {
-    let cases = if failing.len() == 1 { "failing case".into() } else { format!("{} failing cases", failing.len()) };
-    let told = format!("nothing in the catalogue explains the {cases}");
-    match in_common(member, profile, failing, passing) {
-        common if common.is_empty() => told,
-        common => format!("{told}: {}", common.join(", ")),
-    }
+    FormulaDiagnosis { failing: failing.len(), passing: passing.len(), explanations, diagnosis }
 }
 
 struct Trial<'a> {
@@ -100,7 +95,7 @@ struct Trial<'a> {
     failing: &'a [Answered<'a>],
     passing: &'a [Answered<'a>],
     right: Right,
-    found: Vec<Explanation>,
+    found: Vec<TriedMistake>,
 }
 
 impl Trial<'_> {
@@ -131,7 +126,7 @@ impl Trial<'_> {
             let Some(variation) = Variation::of(self.member, &[*fault]) else { continue };
             if self.is_likely(PROBES, PROBES / 8, &variation) {
                 let says = variation.says();
-                self.take(&variation, says, None, prior);
+                self.take(&variation, says.clone(), Some(says), None, prior);
             }
         }
     }
@@ -153,7 +148,7 @@ impl Trial<'_> {
                 });
                 if is_near && self.is_likely(PAIR_PROBES, 1, &variation) {
                     let says = variation.says();
-                    self.take(&variation, says, None, prior);
+                    self.take(&variation, says.clone(), Some(says), None, prior);
                 }
             }
         }
@@ -189,23 +184,57 @@ impl Trial<'_> {
             let mistake = variation.says();
             let says = if mistake.is_empty() { scaled.says() } else { format!("{mistake}, and {}", scaled.says()) };
             let prior = FACTOR_BITS + if mistake.is_empty() { 0.0 } else { bits_of(concerned(self.member).len()) };
-            self.take(&tried, says, Some(scaled.clone()), prior);
+            let mistake = (!mistake.is_empty()).then_some(mistake);
+            self.take(&tried, says, mistake, Some(scaled.clone()), prior);
         }
     }
 
+    /// The formula with the mistakes of a candidate.
+    fn variation(&self, one: &TriedMistake) -> Option<Variation<'_>> {
+        let find = |name: &&'static str| concerned(self.member).iter().find(|of| of.fault.name == *name).copied();
+        Variation::of(self.member, &one.faults.iter().map(find).collect::<Option<Vec<Concerned>>>()?)
+    }
+
+    /// What is legal for whoever makes a candidate's mistakes.
+    fn legal(&self, one: &TriedMistake, variation: &Variation<'_>, row: &Answered<'_>, out: &mut [Accept]) {
+        match &one.parameter {
+            Some(scaled) => scaled.interval(variation, row.inputs, self.profile, out),
+            None => variation.interval(row.inputs, self.profile, out),
+        }
+    }
+
+    /// The outputs at which failing answers are wrong, and how many of these answers the best explanation accounts for.
+    fn outputs(&self, best: Option<&TriedMistake>) -> Vec<FailingOutput> {
+        let spec = &self.member.spec;
+        let best = best.and_then(|best| Some((best, self.variation(best)?)));
+        let mut legal = vec![Accept::ANY; spec.output_len()];
+        let mut counts = vec![[0, 0]; spec.outputs.len()];
+        for (row, right) in self.failing.iter().zip(self.right.legal.chunks(spec.output_len().max(1))) {
+            if let Some((best, variation)) = &best {
+                self.legal(best, variation, row, &mut legal);
+            }
+            let mut start = 0;
+            for (output, [failing, explained]) in spec.outputs.iter().zip(&mut counts) {
+                let of = start..start + output.shape.components();
+                start = of.end;
+                let is_within = |legal: &[Accept]| of.clone().all(|k| legal[k].contains(row.values[k].into()));
+                let is_wrong = !is_within(right);
+                *failing += u64::from(is_wrong);
+                *explained += u64::from(is_wrong && best.is_some() && is_within(&legal));
+            }
+        }
+        let outputs = spec.outputs.iter().zip(counts).filter(|(_, [failing, _])| *failing > 0);
+        outputs
+            .map(|(output, [failing, explained])| FailingOutput { name: output.name.into(), failing, explained })
+            .collect()
+    }
+
     /// The simplest case whose answer one explanation allows and another does not.
-    fn telling(&self, best: &Explanation, next: &Explanation) -> Option<String> {
-        let variation = |one: &Explanation| -> Option<Variation<'_>> {
-            let find = |name: &&'static str| concerned(self.member).iter().find(|of| of.fault.name == *name).copied();
-            Variation::of(self.member, &one.faults.iter().map(find).collect::<Option<Vec<Concerned>>>()?)
-        };
-        let variations = [variation(best)?, variation(next)?];
+    fn telling(&self, best: &TriedMistake, next: &TriedMistake) -> Option<String> {
+        let variations = [self.variation(best)?, self.variation(next)?];
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
         let mut allows = |row: &Answered<'_>, one: usize| {
-            match &[best, next][one].parameter {
-                Some(scaled) => scaled.interval(&variations[one], row.inputs, self.profile, &mut legal),
-                None => variations[one].interval(row.inputs, self.profile, &mut legal),
-            }
+            self.legal([best, next][one], &variations[one], row, &mut legal);
             fit(row.values, &legal) != Fit::Outside
         };
         let simple = |row: &&Answered<'_>| telling(row.inputs, row.is_random());
@@ -228,7 +257,14 @@ impl Trial<'_> {
     }
 
     /// Keeps an explanation that holds for the failing cases. `prior` are the bits that it takes to say which it is.
-    fn take(&mut self, tried: &impl Wrong, says: String, parameter: Option<Scaled>, prior: f64) {
+    fn take(
+        &mut self,
+        tried: &impl Wrong,
+        says: String,
+        mistake: Option<String>,
+        parameter: Option<Scaled>,
+        prior: f64,
+    ) {
         let Some(mut tally) = self.tally_failing(tried) else { return };
         let Some(consistent) = self.tally_passing(tried, &mut tally) else { return };
         let Tally { explained, open, by_output, varies, foretold } = tally;
@@ -243,7 +279,7 @@ impl Trial<'_> {
         // real interval.
         if share(explained, self.failing.len()) >= LEAST && evidence >= LEAST_EVIDENCE {
             let faults = tried.faults();
-            self.found.push(Explanation { faults, says, parameter, explained, open, consistent, evidence });
+            self.found.push(TriedMistake { faults, says, mistake, parameter, explained, open, consistent, evidence });
         }
     }
 
@@ -451,7 +487,7 @@ mod tests {
     use lightmeter_judge::{Outcome, judge};
 
     /// The diagnosis of an implementation of a formula, of 256 cases.
-    fn diagnosis(id: &str, implementation: impl Fn(&Member, &[f32], &mut [f32])) -> (Diagnosis, Vec<Vec<f32>>) {
+    fn diagnosis(id: &str, implementation: impl Fn(&Member, &[f32], &mut [f32])) -> (FormulaDiagnosis, Vec<Vec<f32>>) {
         let member = formulas().iter().find(|member| member.spec.id == id).expect(id);
         let outputs = member.spec.output_len();
         let (mut inputs, mut values, mut wrong) = (vec![], vec![], vec![]);
@@ -489,7 +525,7 @@ mod tests {
         let n = found.failing;
         assert!(n > 100, "{n}");
         assert_eq!(
-            found.sentence,
+            found.diagnosis.to_string(),
             format!("{n} of {n} failing cases are explained by: fog uses radial distance (fog-radial)")
         );
         assert_eq!(found.failing + found.passing, inputs.len());
@@ -498,7 +534,7 @@ mod tests {
     #[test]
     fn two_mistakes_are_told_together() {
         let (found, _) = diagnosis("fog/exp2-opengl", making(&["fog-radial", "red-and-blue-swapped"]));
-        assert_eq!(found.explanations[0].faults, ["fog-radial", "red-and-blue-swapped"], "{}", found.sentence);
+        assert_eq!(found.explanations[0].faults, ["fog-radial", "red-and-blue-swapped"], "{}", found.diagnosis);
     }
 
     #[test]
@@ -513,7 +549,7 @@ mod tests {
                 row[member.spec.place(name).expect(name)].iter_mut().for_each(|x| *x *= factor);
                 member.formula.embedded(&row, out);
             });
-            assert!(found.sentence.ends_with(says), "{}", found.sentence);
+            assert!(found.diagnosis.to_string().ends_with(says), "{}", found.diagnosis.to_string());
         }
     }
 
@@ -523,7 +559,11 @@ mod tests {
             member.formula.embedded(inputs, out);
             out.rotate_left(1);
         });
-        assert!(found.sentence.ends_with("in the order color, f; expected f, color"), "{}", found.sentence);
+        assert!(
+            found.diagnosis.to_string().ends_with("in the order color, f; expected f, color"),
+            "{}",
+            found.diagnosis.to_string()
+        );
     }
 
     #[test]
@@ -541,7 +581,7 @@ mod tests {
         let told = ["density or p", "p or density"]
             .map(says)
             .map(|says| format!("{n} of {n} failing cases are explained by: {says} (fog-radial)"));
-        assert!(told.contains(&found.sentence), "{}", found.sentence);
+        assert!(told.contains(&found.diagnosis.to_string()), "{}", found.diagnosis.to_string());
     }
 
     #[test]
@@ -550,7 +590,11 @@ mod tests {
             member.formula.embedded(inputs, out);
             out.iter_mut().for_each(|x| *x *= 3.0);
         });
-        assert!(found.sentence.contains("(nothing tells which) were 3.00 times"), "{}", found.sentence);
+        assert!(
+            found.diagnosis.to_string().contains("(nothing tells which) were 3.00 times"),
+            "{}",
+            found.diagnosis.to_string()
+        );
     }
 
     #[test]
@@ -591,9 +635,9 @@ mod tests {
             diagnose(member, &rows, &WGSL)
         };
         let found = diagnosis(&|row, out| naive.formula.embedded(row, out));
-        assert!(found.failing > 1 && found.explanations[0].faults == ["naive-form"], "{}", found.sentence);
+        assert!(found.failing > 1 && found.explanations[0].faults == ["naive-form"], "{}", found.diagnosis.to_string());
         let found = diagnosis(&|_, out| out.fill(f32::INFINITY));
-        assert!(found.failing > 1 && found.explanations.is_empty(), "{}", found.sentence);
+        assert!(found.failing > 1 && found.explanations.is_empty(), "{}", found.diagnosis.to_string());
     }
 
     #[test]
@@ -613,10 +657,10 @@ mod tests {
             assert!(
                 found.failing > 8 && found.explanations.is_empty(),
                 "{id}: {} of {}",
-                found.sentence,
+                found.diagnosis,
                 found.failing
             );
-            let says = format!("{id}: {}", found.sentence);
+            let says = format!("{id}: {}", found.diagnosis);
             assert!(says.contains(" have ") && says.contains(input), "{says}");
         }
     }
@@ -628,10 +672,15 @@ mod tests {
         for fault in crate::concerned::concerning(member) {
             let names: &'static [&'static str] = Box::leak(Box::new([fault.name]));
             let (found, inputs) = diagnosis(&member.spec.id, making(names));
-            let Some(case) = found.telling else { continue };
+            let Some(case) = found.diagnosis.telling.as_ref().map(|telling| telling.case.clone()) else { continue };
             told += 1;
-            let (_, next) = found.sentence.split_once("; ").expect("it is told");
-            assert!(next.starts_with(&format!("{case} tells it from the next best: ")), "{}", found.sentence);
+            let told = found.diagnosis.to_string();
+            let (_, next) = told.split_once("; ").expect("it is told");
+            assert!(
+                next.starts_with(&format!("{case} tells it from the next best: ")),
+                "{}",
+                found.diagnosis.to_string()
+            );
             // The next best gives another value there.
             let number: usize = case.rsplit('/').next().and_then(|k| k.parse().ok()).expect("a random case");
             let next = found.explanations.iter().find(|other| next.ends_with(&other.says)).expect("it is one of them");
@@ -653,19 +702,19 @@ mod tests {
         });
         assert_eq!((found.explanations.len(), found.failing), (0, 256));
         assert!(
-            found.sentence.starts_with("nothing in the catalogue explains the 256 failing cases"),
+            found.diagnosis.to_string().starts_with("nothing in the catalogue explains the 256 failing cases"),
             "{}",
-            found.sentence
+            found.diagnosis.to_string()
         );
     }
 
     #[test]
     fn answers_that_are_no_numbers_or_too_short_are_borne() {
         let (found, _) = diagnosis("lighting/spot", |_, _, out| out.fill(f32::NAN));
-        assert!(found.failing == 256 && found.explanations.is_empty(), "{}", found.sentence);
+        assert!(found.failing == 256 && found.explanations.is_empty(), "{}", found.diagnosis.to_string());
         let member = formulas().iter().find(|member| member.spec.id == "fog/exp").expect("fog/exp");
         let short = [Answered { case: CaseRef::Hard(0), inputs: &[1.0], values: &[], is_wrong: true }];
-        assert_eq!(diagnose(member, &short, &WGSL).sentence, "nothing fails");
-        assert_eq!(diagnose(member, &[], &WGSL).sentence, "nothing fails");
+        assert_eq!(diagnose(member, &short, &WGSL).diagnosis.to_string(), "nothing fails");
+        assert_eq!(diagnose(member, &[], &WGSL).diagnosis.to_string(), "nothing fails");
     }
 }

@@ -6,11 +6,11 @@ use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter_catalogue::cases::{Domain, Kind};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
-use lightmeter_document::Number;
 use lightmeter_document::explained::{
     CoursePoint, Explained, HeldNumber, MistakenStep, OutputCourse, ShownMistake, ShownStep,
 };
-use lightmeter_document::run::{Failure, Group, Report};
+use lightmeter_document::report::{Failure, Group, Report};
+use lightmeter_document::{Number, Word};
 use lightmeter_judge::formula::{by_name, units};
 use std::collections::{BTreeMap, HashSet};
 
@@ -48,7 +48,7 @@ fn explain_failures(failures: &[Failure], groups: &[Group], profile: &Profile) -
         let is_group = |group: &&Group| {
             group.adapter == failure.adapter && group.stage == failure.stage && group.has_case(&failure.id)
         };
-        let mistakes = groups.iter().find(is_group).map_or(&[][..], |group| &group.mistakes);
+        let mistakes = groups.iter().find(is_group).map_or(&[][..], |group| group.mistakes());
         explained.push(explained_case(&failure.id, member, &inputs, &failure.output, mistakes, profile));
     }
     explained
@@ -109,7 +109,7 @@ fn explained_case(
     member: &Member,
     inputs: &[f32],
     output: &str,
-    mistakes: &[String],
+    mistakes: &[Word],
     profile: &Profile,
 ) -> Explained {
     let spec = &member.spec;

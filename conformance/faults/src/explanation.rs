@@ -1,16 +1,20 @@
-//! What explains a renderer's wrong answers, ranked and told as a sentence.
+//! What explains a renderer's wrong answers, ranked.
 
 use super::catalogue::faults;
 use super::factor::Scaled;
+use lightmeter_document::Word;
+use lightmeter_document::report::{Diagnosis, Explanation, Standing, WrongParameter};
 use serde::Serialize;
 
 /// What may have been done in a formula's place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Explanation {
+pub struct TriedMistake {
     /// The mistake's name, or those of a pair; none for a wrong parameter.
     pub faults: Vec<&'static str>,
     /// In words, as the end of a sentence.
     pub says: String,
+    /// What its mistakes alone say, where it has any.
+    pub mistake: Option<String>,
     /// The parameter that is wrong, and how many times what was asked it seems to be.
     pub parameter: Option<Scaled>,
     /// Failing cases whose answer is legal for who makes the mistake.
@@ -26,51 +30,30 @@ pub struct Explanation {
 
 /// What a renderer did wrong in a formula.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Diagnosis {
+pub struct FormulaDiagnosis {
     /// Cases that failed.
     pub failing: usize,
     /// Cases that passed.
     pub passing: usize,
     /// The best first; only those that explain nearly all of the failing cases.
-    pub explanations: Vec<Explanation>,
-    /// The simplest case that tells the best from the next that is not as good: the best explains its answer, that one does not.
-    pub telling: Option<String>,
-    /// The outcome as a sentence.
-    pub sentence: String,
-}
-
-impl Diagnosis {
-    /// What the best explanation says, and by which names the catalogue knows it.
-    #[must_use]
-    pub fn cause(&self) -> Option<String> {
-        self.explanations.first().map(|best| told(best, &self.explanations))
-    }
-
-    /// The outcome where the failing cases are a sample of `all`.
-    #[must_use]
-    pub fn sentence_of(&self, all: usize) -> String {
-        if all == self.failing {
-            return self.sentence.clone();
-        }
-        format!("of {all} failing cases {} were looked at: {}", self.failing, self.sentence)
-    }
+    pub explanations: Vec<TriedMistake>,
+    /// What a report says of it, of these cases alone.
+    pub diagnosis: Diagnosis,
 }
 
 /// Explanations that are kept.
 const MOST_EXPLANATIONS: usize = 5;
 /// The bits within which two explanations are equally good.
 const EQUAL: f64 = 8.0;
-/// Explanations beyond the best that are told as equally good.
-const MOST_EQUAL: usize = 2;
 /// Whether another explanation is as good as the best.
-pub(super) fn is_equal(best: &Explanation, other: &Explanation) -> bool {
+pub(super) fn is_equal(best: &TriedMistake, other: &TriedMistake) -> bool {
     (best.evidence - other.evidence).abs() <= EQUAL
 }
 
 /// Puts the best first: those with the most evidence, and of equally good ones the simplest, in the order of the catalogue.
-pub(super) fn rank(explanations: &mut Vec<Explanation>) {
-    let kind = |e: &Explanation| if e.parameter.is_some() { 3 + e.faults.len() } else { e.faults.len() };
-    let order = |e: &Explanation| -> Vec<usize> {
+pub(super) fn rank(explanations: &mut Vec<TriedMistake>) {
+    let kind = |e: &TriedMistake| if e.parameter.is_some() { 3 + e.faults.len() } else { e.faults.len() };
+    let order = |e: &TriedMistake| -> Vec<usize> {
         e.faults.iter().filter_map(|name| faults().iter().position(|fault| fault.name == *name)).collect()
     };
     explanations.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
@@ -80,47 +63,56 @@ pub(super) fn rank(explanations: &mut Vec<Explanation>) {
     explanations.truncate(MOST_EXPLANATIONS);
 }
 
-pub(super) fn sentence(failing: usize, explanations: &[Explanation]) -> String {
-    let cases = if failing == 1 { "case is" } else { "cases are" };
-    let Some(best) = explanations.first() else { return "nothing fails".into() };
-    let Explanation { explained, open, .. } = best;
-    let mut told = format!("{explained} of {failing} failing {cases} explained by: {}", told(best, explanations));
-    let equal = |other: &&Explanation| {
-        other.parameter.is_none() && other.faults.len() <= best.faults.len() && is_equal(best, other)
+/// Explanations as a report has them, each with its place among the ranked: the best first, of which parameters that explain just as much by
+/// the same factor are one.
+pub(super) fn told(ranked: &[TriedMistake]) -> Vec<(usize, Explanation)> {
+    let Some(best) = ranked.first() else { return vec![] };
+    let others = ranked.iter().enumerate().skip(1).filter(|(_, other)| !is_same(best, other));
+    let standing = |other: &TriedMistake| {
+        let is_as_simple = other.parameter.is_none() && other.faults.len() <= best.faults.len();
+        if is_as_simple && is_equal(best, other) { Standing::Equal } else { Standing::Next }
     };
-    for other in explanations.iter().skip(1).filter(equal).take(MOST_EQUAL) {
-        told = format!("{told}; or just as well by: {}{}", other.says, called(&other.faults));
-    }
-    match open {
-        0 => told,
-        open => format!("{told}; in {open} of them whoever makes this mistake may answer anything"),
+    let first = best.told(Standing::Best, together(best, ranked));
+    let others = others.map(|(place, other)| {
+        let own = other.parameter.iter().map(|scaled| scaled.name.to_owned()).collect();
+        (place, other.told(standing(other), (other.says.clone(), own)))
+    });
+    std::iter::once((0, first)).chain(others).collect()
+}
+
+impl TriedMistake {
+    fn told(&self, standing: Standing, (says, names): (String, Vec<String>)) -> Explanation {
+        Explanation {
+            says,
+            mistakes: self.faults.iter().map(|name| Word::from(*name)).collect(),
+            parameter: self.parameter.as_ref().map(|scaled| WrongParameter { names, factor: scaled.factor }),
+            explained: self.explained as u64,
+            open: self.open as u64,
+            standing,
+        }
     }
 }
 
-/// What the best explanation says, and its mistakes' names.
-fn told(best: &Explanation, explanations: &[Explanation]) -> String {
-    together(best, explanations) + &called(&best.faults)
-}
-
-/// The names under which `lightmeter mistakes` and `--mistake` know what explains answers.
-pub(super) fn called(names: &[&str]) -> String {
-    if names.is_empty() { String::new() } else { format!(" ({})", names.join(" and ")) }
+/// Whether another explanation differs in nothing but which parameter is meant.
+fn is_same(best: &TriedMistake, other: &TriedMistake) -> bool {
+    let Some([scaled, others]) = best.parameter.as_ref().zip(other.parameter.as_ref()).map(|(a, b)| [a, b]) else {
+        return false;
+    };
+    let counts = |e: &TriedMistake| (e.explained, e.open, e.consistent);
+    counts(other) == counts(best) && other.faults == best.faults && (others.factor / scaled.factor - 1.0).abs() < 1e-3
 }
 
 /// What the best explanation says, with the parameters that explain just as much by the same factor: nothing tells them apart.
-fn together(best: &Explanation, explanations: &[Explanation]) -> String {
-    let Some(scaled) = &best.parameter else { return best.says.clone() };
-    let is_same = |other: &&Explanation| {
-        let counts = |e: &Explanation| (e.explained, e.open, e.consistent);
-        let factor = other.parameter.as_ref().map_or(f64::NAN, |other| other.factor);
-        counts(other) == counts(best) && other.faults == best.faults && (factor / scaled.factor - 1.0).abs() < 1e-3
-    };
-    let mut names: Vec<&str> =
-        explanations.iter().filter(is_same).filter_map(|e| Some(e.parameter.as_ref()?.name)).collect();
+fn together(best: &TriedMistake, ranked: &[TriedMistake]) -> (String, Vec<String>) {
+    let Some(scaled) = &best.parameter else { return (best.says.clone(), vec![]) };
+    let same = ranked.iter().filter(|other| is_same(best, other));
+    let mut names: Vec<String> = same.filter_map(|e| Some(e.parameter.as_ref()?.name.to_owned())).collect();
     // An input and an output may have the same name.
     names.dedup();
-    // Before it may stand a mistake.
-    let parts = best.says.split_once(&format!("as if {} ", scaled.name)).filter(|_| names.len() > 1);
-    let Some((mistake, phrase)) = parts else { return best.says.clone() };
-    format!("{mistake}as if {} (nothing tells which) {phrase}", names.join(" or "))
+    if names.len() < 2 {
+        return (best.says.clone(), names);
+    }
+    let mistake = best.mistake.as_ref().map(|mistake| format!("{mistake}, and ")).unwrap_or_default();
+    let which = format!("{} (nothing tells which)", names.join(" or "));
+    (format!("{mistake}{}", scaled.says_of(&which)), names)
 }

@@ -51,7 +51,12 @@ impl Scaled {
     /// In words: "as if shininess were 4.00 times what was asked".
     #[must_use]
     pub fn says(&self) -> String {
-        let (name, percent) = (self.name, (self.factor - 1.0) * 100.0);
+        self.says_of(self.name)
+    }
+
+    /// The same, of what is called so.
+    pub(super) fn says_of(&self, name: &str) -> String {
+        let percent = (self.factor - 1.0) * 100.0;
         let asked = if self.is_output { "what it should be" } else { "what was asked" };
         if percent.abs() < 10.0 {
             let way = if percent < 0.0 { "smaller" } else { "larger" };

@@ -33,7 +33,7 @@ pub use catalogue::faults;
 pub use concerned::concerning;
 pub use diagnose::diagnose;
 pub use explained::{explain, shown_mistake, shown_step, typical_course};
-pub use explanation::{Diagnosis, Explanation};
+pub use explanation::{FormulaDiagnosis, TriedMistake};
 pub use factor::Scaled;
 pub use fault::Fault;
 pub use group::{LEAST_ERROR, LEAST_SHARE, LEAST_VALUES, LEAST_Z, group_verdict};

@@ -5,7 +5,8 @@ use crate::group::group_verdict;
 use crate::scene::Trial;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::select::Member;
-use lightmeter_judge::diagnose::{Answered, Cause, Diagnose};
+use lightmeter_document::report::{Diagnosis, Problem, ProblemKind};
+use lightmeter_judge::diagnose::{Answered, Diagnose};
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_scene::frame::Frame;
@@ -15,21 +16,17 @@ use lightmeter_scene::frame::Frame;
 pub struct Mistakes;
 
 impl Diagnose for Mistakes {
-    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> Cause {
+    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> Diagnosis {
         let found = diagnose(member, answered, profile);
-        let says = found.sentence_of(usize::try_from(failing).unwrap_or(usize::MAX));
-        let names = found.explanations.first().map(|first| first.faults.iter().map(ToString::to_string).collect());
-        Cause { says, cause: found.cause(), mistakes: names.unwrap_or_default() }
+        Diagnosis { failing, ..found.diagnosis }
     }
 
-    fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<String> {
-        group_verdict(member, answered, profile).map(|systematic| systematic.says)
+    fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<Problem> {
+        let found = group_verdict(member, answered, profile)?;
+        Some(Problem::new(ProblemKind::Systematic, found.says))
     }
 
-    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> Cause {
-        let found = Trial::new(frame, image, expected, profile).diagnose();
-        let names =
-            found.explanations.first().map(|first| first.faults.iter().map(|fault| fault.name.into()).collect());
-        Cause { cause: found.cause(), says: found.sentence, mistakes: names.unwrap_or_default() }
+    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> Diagnosis {
+        Trial::new(frame, image, expected, profile).diagnose().diagnosis
     }
 }

@@ -5,7 +5,7 @@
 
 use super::concerned::concerning;
 use super::diagnose::diagnose;
-use super::explanation::Diagnosis;
+use super::explanation::FormulaDiagnosis;
 use super::fault::Fault;
 use super::group::group_verdict;
 use super::variation::Variation;
@@ -167,13 +167,13 @@ impl<'a> Bench<'a> {
             first_case: smallest.map(|place| self.member.case_id(self.cases[place])),
             smallest_random: random.position(|(row, _)| row.is_wrong).map(|place| place + 1),
             diagnosis: named.into_iter().map(String::from).collect(),
-            sentence: diagnosis.sentence,
+            sentence: diagnosis.diagnosis.to_string(),
             alias,
         }
     }
 
     /// Whether what is diagnosed has the same values in every case, as nearly as can be told.
-    fn is_alias(&self, variation: &Variation<'_>, diagnosis: &Diagnosis) -> bool {
+    fn is_alias(&self, variation: &Variation<'_>, diagnosis: &FormulaDiagnosis) -> bool {
         let Some(first) = diagnosis.explanations.first() else { return false };
         let faults: Vec<&'static Fault> = first.faults.iter().filter_map(|name| Fault::by_name(name)).collect();
         let Some(other) = Variation::new(self.member, &faults).filter(|_| !faults.is_empty()) else { return false };

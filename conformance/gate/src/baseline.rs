@@ -2,11 +2,10 @@
 
 use lightmeter_catalogue::cases::GENERATOR_VERSION;
 use lightmeter_catalogue::filter::Filter;
-use lightmeter_document::Document;
-use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::gate::{GateGroup, GateReport, cases};
+use lightmeter_document::by_case::{CaseCounts, CaseTotals};
 use lightmeter_document::pack::Choice;
-use lightmeter_document::run::{Group, Report, Totals};
+use lightmeter_document::report::{Group, Report, Totals};
+use lightmeter_document::{Document, cases};
 use lightmeter_files::read::MOST_TEXT;
 use lightmeter_files::shown;
 use lightmeter_judge::cases::{count_of, expanded};
@@ -48,77 +47,50 @@ pub struct Standard {
 /// A group that is compared with the one of the same name.
 #[derive(Debug)]
 struct ComparedGroup {
-    /// Its id, and of a run the adapter and the stage.
+    /// Its id and place.
     name: String,
+    group: Group,
     /// Counts of cases, or of verdicts.
-    counts: GateGroup,
+    counts: CaseCounts,
     /// Whether they are of cases.
     is_by_case: bool,
 }
 
-impl From<&GateReport> for Standard {
-    fn from(report: &GateReport) -> Self {
-        let group = |group: &GateGroup| ComparedGroup { name: group.name(), counts: group.clone(), is_by_case: true };
-        let why = [
-            (report.signal.is_some() || report.interrupted.is_some(), "the gate was interrupted"),
-            (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
-            (report.totals.unstable > 0, "answers changed when they were asked once more"),
-            (!report.has_judged(), "nothing was judged"),
-        ];
-        let compared_by = report.compared_by.clone().unwrap_or_default();
-        let totals = &report.totals;
-        let sum = |count: fn(&GateGroup) -> u64| report.groups.iter().map(count).fold(0, u64::saturating_add);
-        let sums = vec![
-            ("asked", totals.asked, sum(|group| group.asked)),
-            ("failed", totals.failed, sum(|group| group.failed)),
-            ("skipped", totals.skipped, sum(|group| group.skipped)),
-            ("missing", totals.missing, sum(|group| group.missing)),
-            ("verdicts", totals.verdicts, sum(|group| group.verdicts)),
-            ("indeterminate", totals.indeterminate, sum(|group| group.indeterminate)),
-        ];
+impl ComparedGroup {
+    fn of(group: &Group) -> Self {
+        let totals = &group.totals;
+        let of_verdicts = CaseTotals {
+            asked: totals.cases.saturating_sub(totals.skipped),
+            passed: totals.passed,
+            failed: totals.failed,
+            skipped: totals.skipped,
+            ..CaseTotals::default()
+        };
         Self {
-            sums,
-            choice: report.choice.clone(),
-            generator: report.generator,
-            profile: report.profile.clone(),
-            renderer: Some(shown(&report.renderer.name).into_owned()),
-            is_of_a_shader: false,
-            shard: compared_by.shard,
-            targets: compared_by.targets.iter().map(ToString::to_string).collect(),
-            groups: report.groups.iter().map(group).collect(),
-            expected: report.expectations.iter().map(|one| one.id.clone()).collect(),
-            unfit: why.into_iter().find(|(is_so, _)| *is_so).map(|(_, why)| why),
+            name: group.name(),
+            counts: group
+                .by_case
+                .clone()
+                .unwrap_or_else(|| CaseCounts { totals: of_verdicts, ..CaseCounts::default() }),
+            is_by_case: group.by_case.is_some(),
+            group: group.clone(),
         }
     }
 }
 
 impl From<&Report> for Standard {
     fn from(report: &Report) -> Self {
-        let group = |group: &Group| {
-            let totals = &group.totals;
-            let of_verdicts = CaseCounts {
-                asked: totals.cases.saturating_sub(totals.skipped),
-                passed: totals.passed,
-                failed: totals.failed,
-                skipped: totals.skipped,
-                ..CaseCounts::default()
-            };
-            ComparedGroup {
-                name: format!("{} on {}, {}", group.id, group.adapter, group.place()),
-                counts: GateGroup::of(group, group.by_case.as_ref().unwrap_or(&of_verdicts)),
-                is_by_case: group.by_case.is_some(),
-            }
-        };
         let why = [
-            (report.interrupted.is_some(), "the run was interrupted"),
+            (report.interrupted.is_some(), "it was interrupted"),
+            (report.is_broken(), "the renderer broke off, or wrote what is no answer"),
             (report.unstable > 0, "answers changed when they were asked once more"),
-            (report.totals.verdicts == report.totals.indeterminate, "nothing was judged"),
+            (!report.has_judged(), "nothing was judged"),
         ];
         let compared_by = report.compared_by.clone().unwrap_or_default();
         let mut sum = Totals::default();
         report.groups.iter().for_each(|group| sum.add(&group.totals));
         let totals = &report.totals;
-        let sums = vec![
+        let mut sums = vec![
             ("cases", totals.cases, sum.cases),
             ("verdicts", totals.verdicts, sum.verdicts),
             ("passed", totals.passed, sum.passed),
@@ -126,16 +98,25 @@ impl From<&Report> for Standard {
             ("skipped", totals.skipped, sum.skipped),
             ("indeterminate", totals.indeterminate, sum.indeterminate),
         ];
+        if let Some(own) = &report.by_case {
+            let sum = report.cases();
+            sums.extend([
+                ("cases that were asked", own.asked, sum.asked),
+                ("cases that failed", own.failed, sum.failed),
+                ("cases that were skipped", own.skipped, sum.skipped),
+                ("cases that are missing", own.missing, sum.missing),
+            ]);
+        }
         Self {
             sums,
             choice: compared_by.choice,
             generator: compared_by.generator,
             profile: report.profile.to_string(),
-            renderer: None,
+            renderer: report.renderer.as_ref().map(|renderer| shown(&renderer.identity.name).into_owned()),
             is_of_a_shader: report.shader.is_some(),
             shard: compared_by.shard,
             targets: compared_by.targets.iter().map(ToString::to_string).collect(),
-            groups: report.groups.iter().map(group).collect(),
+            groups: report.groups.iter().map(ComparedGroup::of).collect(),
             expected: report.expectations.iter().map(|one| one.id.clone()).collect(),
             unfit: why.into_iter().find(|(is_so, _)| *is_so).map(|(_, why)| why),
         }
@@ -145,14 +126,14 @@ impl From<&Report> for Standard {
 impl Standard {
     /// Whether a group that is missing here, and is there in an earlier result, was asked for.
     fn asks_for(&self, before: &ComparedGroup, is_part: bool) -> bool {
-        let counts = &before.counts;
-        if counts.target.as_ref().is_some_and(|target| !self.targets.iter().any(|asked| target == asked)) {
+        let (group, target) = (&before.group, self.renderer.as_ref().and_then(|_| before.group.blended_on()));
+        if target.is_some_and(|target| !self.targets.iter().any(|asked| target == asked)) {
             return false;
         }
         // A renderer's group on a target is there where its states are asked for at all.
         let is_below =
-            |group: &ComparedGroup| group.counts.id.strip_prefix(&counts.id).is_some_and(|rest| rest.starts_with('/'));
-        !is_part || (counts.target.is_some() && self.groups.iter().any(is_below))
+            |other: &ComparedGroup| other.group.id.strip_prefix(&group.id).is_some_and(|rest| rest.starts_with('/'));
+        !is_part || (target.is_some() && self.groups.iter().any(is_below))
     }
 }
 
@@ -199,24 +180,22 @@ pub enum BaselineError {
 }
 
 impl Baseline {
-    /// Reads the JSON of a gate.
+    /// Reads the JSON of a gate, where a renderer is asked, or else of a run.
     ///
     /// # Errors
-    /// Where it is not the JSON of a gate.
-    pub fn of_gate(path: &Path) -> Result<Self, BaselineError> {
-        let report: GateReport = read(path)?;
-        Self::checked(Standard::from(&report), path)
-    }
-
-    /// Reads the JSON of a run.
-    ///
-    /// # Errors
-    /// Where it is not the JSON of a run, or of an older version, which does not say what chose its cases.
-    pub fn of_run(path: &Path) -> Result<Self, BaselineError> {
-        let report: Report = read(path)?;
+    /// Where it is not that, or does not say what chose its cases.
+    pub fn read(path: &Path, is_asked: bool) -> Result<Self, BaselineError> {
+        let report = read(path)?;
+        let refused = |message: &str| Err(BaselineError::Read { path: path.into(), message: message.into() });
+        match (report.renderer.is_some(), is_asked) {
+            (true, false) => return refused("it is the JSON of `gate`; expected that of `run`"),
+            (false, true) => return refused("it is the JSON of `run`; expected that of `gate`"),
+            _ => {}
+        }
         if report.compared_by.is_none() {
-            let message = "it does not say what chose its cases; expected the JSON of a later version's run".into();
-            return Err(BaselineError::Read { path: path.into(), message });
+            return refused(
+                "it does not say what chose its cases (`compared_by`), so that nothing can be compared with it",
+            );
         }
         Self::checked(Standard::from(&report), path)
     }
@@ -244,8 +223,8 @@ impl Baseline {
             }
             let named = counts.not_passed.values().flatten().map(|text| count_of(text));
             let named = named.fold(0, u64::saturating_add);
-            if named > counts.asked {
-                let asked = counts.asked;
+            if named > counts.totals.asked {
+                let asked = counts.totals.asked;
                 return refused(format!("{name}: {named} cases did not pass of {asked} that were asked"));
             }
         }
@@ -263,7 +242,7 @@ impl Baseline {
         is_shard: bool,
         path: &Path,
     ) -> Result<Vec<String>, BaselineError> {
-        let asked = now.groups.iter().map(|group| (group.name.as_str(), group.counts.asked));
+        let asked = now.groups.iter().map(|group| (group.name.as_str(), group.counts.totals.asked));
         self.is_of(&now.choice, asked, Some(&now.profile), path)?;
         if self.0.shard.is_some() && self.0.shard != now.shard {
             let [before, now] = [&self.0.shard, &now.shard].map(|shard| shard.as_deref().unwrap_or("1/1"));
@@ -300,12 +279,13 @@ impl Baseline {
     #[must_use]
     pub fn progress(&self, now: &Standard) -> (Vec<String>, Vec<String>) {
         let (mut mended, mut added) = (vec![], vec![]);
-        for ComparedGroup { name, counts: now, .. } in now.groups.iter().filter(|group| group.counts.asked > 0) {
+        for ComparedGroup { name, counts: now, .. } in now.groups.iter().filter(|group| group.counts.totals.asked > 0) {
             let Some(ComparedGroup { counts: before, .. }) = self.0.groups.iter().find(|group| group.name == *name)
             else {
-                added.push(format!("{name}: {} cases", now.asked));
+                added.push(format!("{name}: {} cases", now.totals.asked));
                 continue;
             };
+            let (before, now) = (&before.totals, &now.totals);
             for (what, before, now) in [("failed", before.failed, now.failed), ("missing", before.missing, now.missing)]
             {
                 if now < before {
@@ -352,7 +332,7 @@ impl Baseline {
         if !self.has_filter_of(now) {
             // What the renderer did not declare then has no cases there, and may have some now.
             let known: HashMap<&str, u64> =
-                self.0.groups.iter().map(|group| (group.name.as_str(), group.counts.asked)).collect();
+                self.0.groups.iter().map(|group| (group.name.as_str(), group.counts.totals.asked)).collect();
             let lacks = |(id, asked): &(&str, u64)| known.get(id).is_none_or(|before| (1..*asked).contains(before));
             let mut missing = asked.filter(lacks).map(|(id, _)| id);
             if let Some(first) = missing.next() {
@@ -380,42 +360,44 @@ impl Comparison {
     /// no other cases pass than did, since a case that passes now may err by more than all that passed before.
     fn of(&self, before: &ComparedGroup, now: &ComparedGroup) -> Vec<String> {
         let (id, is_by_case) = (&now.name, before.is_by_case && now.is_by_case);
+        let [of_before, of_now] = [before, now].map(|one| (&one.group, one.counts.totals));
         let (before, now) = (&before.counts, &now.counts);
-        let target = now.target.as_deref();
+        let ((group_before, before_all), (group, now_all)) = (of_before, of_now);
         let mut worse = vec![];
-        if before.asked == 0 {
+        if before_all.asked == 0 {
             return worse;
         }
-        if now.asked < before.asked && (!self.is_part || now.asked == 0) {
-            let (asked, were) = (now.asked, before.asked);
+        if now_all.asked < before_all.asked && (!self.is_part || now_all.asked == 0) {
+            let (asked, were) = (now_all.asked, before_all.asked);
             worse.push(format!("{id}: {asked} cases are asked, {were} were: the renderer declares less"));
         }
         for what in ["failed", "skipped", "missing"] {
-            worse.extend(self.new_cases(id, [before, now], what));
+            worse.extend(self.new_cases((id, &group.id), [before, now], what));
         }
-        if !is_by_case && now.failed > before.failed {
-            worse.push(format!("{id}: {} verdicts fail, {} did", now.failed, before.failed));
+        if !is_by_case && now_all.failed > before_all.failed {
+            worse.push(format!("{id}: {} verdicts fail, {} did", now_all.failed, before_all.failed));
         }
         let others_pass = {
-            let of = |group: &GateGroup| -> HashSet<String> {
-                group.not_passed.values().flatten().flat_map(|text| expanded(text)).collect()
+            let of = |counts: &CaseCounts| -> HashSet<String> {
+                counts.not_passed.values().flatten().flat_map(|text| expanded(text)).collect()
             };
             !of(before).is_subset(&of(now))
         };
-        let is_same = now.asked == before.asked && !others_pass;
-        if is_same && now.indeterminate > before.indeterminate {
-            worse.push(format!("{id}: {} verdicts permit anything, {} did", now.indeterminate, before.indeterminate));
+        let is_same = now_all.asked == before_all.asked && !others_pass;
+        let undecided = |group: &Group| group.totals.indeterminate;
+        if is_same && undecided(group) > undecided(group_before) {
+            let [now, before] = [group, group_before].map(undecided);
+            worse.push(format!("{id}: {now} verdicts permit anything, {before} did"));
         }
-        // The format of what was drawn on ends the name of a run's group, and is a gate's group's target; a gate does not tell that of a scene.
-        let format = target.unwrap_or_else(|| id.rsplit(' ').next().unwrap_or_default());
-        let unit = match TargetFormat::by_name(format) {
+        let format = group.target.as_deref().filter(|_| group.asked().is_none() || group.blended_on().is_some());
+        let unit = match format.and_then(TargetFormat::by_name) {
             Some(format) if format.is_unorm() => "steps",
-            None if id.starts_with("scene/") => "steps or ULP",
+            None if group.id.starts_with("scene/") => "steps or ULP",
             _ => "ULP",
         };
-        let all_expected = now.expected_failures > before.expected_failures;
+        let all_expected = now_all.expected_failures > before_all.expected_failures;
         for (is_alike, what, before, now, floor) in [
-            (!all_expected, "errs by", before.error_max, now.error_max, FLOOR),
+            (!all_expected, "errs by", group_before.error_ulp_max, group.error_ulp_max, FLOOR),
             (!others_pass, "errs where it passes by", before.error_passing, now.error_passing, FLOOR),
             (is_same, "errs where it passes, in the mean, by", before.error_mean, now.error_mean, MEAN_FLOOR),
         ] {
@@ -433,14 +415,14 @@ impl Comparison {
     }
 
     /// The cases that passed and do not, and are not expected to fail; that were answered or skipped and are missing.
-    fn new_cases(&self, name: &str, [before, now]: [&GateGroup; 2], what: &str) -> Option<String> {
+    fn new_cases(&self, (name, group): (&str, &str), [before, now]: [&CaseCounts; 2], what: &str) -> Option<String> {
         let spared = if what == "skipped" { &["skipped", "failed"][..] } else { &[what][..] };
         let known: HashSet<String> = (spared.iter().filter_map(|state| before.not_passed.get(*state)).flatten())
             .flat_map(|text| expanded(text))
             .collect();
         let cases = now.not_passed.get(what).into_iter().flatten().flat_map(|text| expanded(text));
         // A hard case of several formulas has its whole id there.
-        let id = |case: &str| format!("{}/{case}", now.id);
+        let id = |case: &str| format!("{group}/{case}");
         let is_expected =
             |case: &str| self.expected.iter().any(|filter| filter.selects(case) || filter.selects(&id(case)));
         let new: Vec<String> =
@@ -455,20 +437,17 @@ fn cases_of(count: usize) -> String {
     cases(count as u64)
 }
 
-fn read<T: Document>(path: &Path) -> Result<T, BaselineError> {
+fn read(path: &Path) -> Result<Report, BaselineError> {
     let failed = |message: String| BaselineError::Read { path: path.into(), message };
     let text = lightmeter_files::read::text(path, MOST_TEXT).map_err(|error| failed(error.to_string()))?;
-    T::read(&text).map_err(|error| failed(error.to_string()))
+    Report::read(&text).map_err(|error| failed(error.to_string()))
 }
 
 /// Writes a result as a baseline, whole or not at all.
 ///
 /// # Errors
 /// Where it cannot be written, or the run was broken off, unstable or judged nothing.
-pub fn update<T: Document>(report: &T, path: &Path) -> Result<(), BaselineError>
-where
-    Standard: for<'a> From<&'a T>,
-{
+pub fn update(report: &Report, path: &Path) -> Result<(), BaselineError> {
     if let Some(why) = Standard::from(report).unfit {
         return Err(BaselineError::Unfit { path: path.into(), why });
     }

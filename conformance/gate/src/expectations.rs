@@ -3,7 +3,7 @@
 use super::given::{is_everything, refused};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::filter::Filter;
-use lightmeter_document::gate::KnownFailure;
+use lightmeter_document::by_case::KnownFailure;
 use lightmeter_files::read::MOST_TEXT;
 use lightmeter_judge::cases::ExpectedFailure;
 use lightmeter_scene::target::TargetFormat;

@@ -16,7 +16,7 @@ use lightmeter_catalogue::select::catalogue;
 use lightmeter_catalogue::special::{Gives, PROBES, Probe};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::{RendererUse, SourcePlace};
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_judge::blend_unit::pixel::Units;
 use lightmeter_judge::cases::{Answers, Unanswered};
 use lightmeter_scene::frame::Frame;
@@ -289,7 +289,7 @@ impl Declared {
 
     /// How it is named in reports.
     pub(super) fn identity(&self) -> Identity {
-        self.hello.identity().of_run()
+        (&self.hello.identity()).into()
     }
 
     /// What a report says of it, where nothing went wrong.

@@ -8,7 +8,7 @@ use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_document::Unique;
-use lightmeter_document::gate::RendererIdentity;
+use lightmeter_document::by_case::RendererIdentity;
 use lightmeter_document::protocol::PROTOCOL;
 use lightmeter_scene::frame::Frame;
 use serde::{Deserialize, Serialize};

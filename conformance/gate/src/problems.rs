@@ -1,7 +1,7 @@
 //! Lines that cannot be read as answers: counted by kind, the first of them in words.
 
 use super::words::clipped;
-use lightmeter_document::gate::Problems;
+use lightmeter_document::by_case::Problems;
 
 /// Problems of each kind that are kept in words.
 const KEPT: u64 = 32;

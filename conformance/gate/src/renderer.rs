@@ -12,7 +12,7 @@ use lightmeter_catalogue::cases::blend::{Program, UnitCase};
 use lightmeter_catalogue::select::CaseRef;
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::by_case::{RendererUse, SourcePlace};
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
 use lightmeter_engine::rows::Rows;
@@ -206,7 +206,7 @@ mod tests {
     use lightmeter_catalogue::filter::Filter;
     use lightmeter_catalogue::select::{Member, catalogue};
     use lightmeter_document::event::Silent;
-    use lightmeter_document::gate::GateReport;
+    use lightmeter_document::report::Report;
     use lightmeter_engine::device::Code;
     use lightmeter_engine::options::Options;
     use lightmeter_engine::run::run;
@@ -250,11 +250,7 @@ mod tests {
         }
     }
 
-    fn gate(
-        filter: &[&str],
-        fault: Option<(&'static str, &'static str)>,
-        scene_fault: Option<&'static str>,
-    ) -> GateReport {
+    fn gate(filter: &[&str], fault: Option<(&'static str, &'static str)>, scene_fault: Option<&'static str>) -> Report {
         // Each call has a folder of its own: tests run at the same time in one process.
         let name = filter.join("+").replace('/', "-");
         let folder = std::env::temp_dir().join(format!("lightmeter-renderer-{}-{name}", std::process::id()));
@@ -271,7 +267,7 @@ mod tests {
         let mut subject = Subject::renderer(renderer.identity(), Box::new(renderer));
         let report = run(std::slice::from_mut(&mut subject), &options, &mut Silent);
         let _ = std::fs::remove_dir_all(&folder);
-        GateReport::of(&report.expect("nothing fails but the renderer"), String::new(), None)
+        report.expect("nothing fails but the renderer")
     }
 
     #[test]
@@ -284,10 +280,12 @@ mod tests {
     #[test]
     fn a_mistake_in_a_formula_and_one_in_a_scene_are_told_by_name() {
         let report = gate(&["fog/linear", "fog/exp"], Some(("fog-smoothstep", "fog/linear")), None);
-        let said: Vec<_> = report.groups.iter().filter_map(|group| group.diagnosis.clone()).collect();
+        let said: Vec<_> =
+            report.groups.iter().filter_map(|group| group.diagnosis.as_ref().map(ToString::to_string)).collect();
         assert!(said.len() == 1 && said[0].contains("smoothstep"), "{said:?}");
         let report = gate(&["scene/fog-exp2-opengl", "scene/flat", "scene/gouraud"], None, Some("fog-radial"));
-        let said: Vec<_> = report.groups.iter().filter_map(|group| group.diagnosis.clone()).collect();
+        let said: Vec<_> =
+            report.groups.iter().filter_map(|group| group.diagnosis.as_ref().map(ToString::to_string)).collect();
         assert!(said.len() == 1 && said[0].contains("fog is by the distance from the eye"), "{said:?}");
     }
 }

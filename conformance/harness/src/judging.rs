@@ -5,9 +5,8 @@ use lightmeter_catalogue::cases::GENERATOR_VERSION;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::by_case::{ComparedBy, Coverage};
 use lightmeter_document::event::Silent;
-use lightmeter_document::gate::GateReport;
 use lightmeter_document::pack::Choice;
-use lightmeter_document::run::Report;
+use lightmeter_document::report::Report;
 use lightmeter_engine::device::Code;
 use lightmeter_engine::options::{ASKED_CASES, Options};
 use lightmeter_engine::run::run_selection;
@@ -20,8 +19,8 @@ use lightmeter_gate::baseline::{Baseline, BaselineError, Standard};
 use lightmeter_gate::expectations::{ExpectationError, Expectations};
 use lightmeter_gate::plan::unmatched;
 use lightmeter_gate::renderer::InProcess;
-use lightmeter_report::gate::{GateStyle, text};
 use lightmeter_report::github;
+use lightmeter_report::text::{Style, write};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -117,7 +116,7 @@ impl Criteria {
         (selection.scenes, selection.blended) = (vec![], vec![]);
         let parts = selection.parts();
         let earlier = |path: &PathBuf| match path.exists() {
-            true => Ok((path.clone(), Baseline::of_gate(path)?)),
+            true => Ok((path.clone(), Baseline::read(path, true)?)),
             false => Err(HarnessError::NoBaseline(path.clone())),
         };
         let baseline = self.baseline.as_ref().map(earlier).transpose()?;
@@ -147,7 +146,7 @@ impl Criteria {
 
 impl Judged {
     /// What the engine is worth in a part, against the baseline as well.
-    pub(crate) fn of(&self, part: &SelectionPart) -> Result<GateReport, HarnessError> {
+    pub(crate) fn of(&self, part: &SelectionPart) -> Result<Report, HarnessError> {
         let choice = Choice { filter: part.filters.clone(), ..self.choice.clone() };
         let mut report = self.report(&part.selection, &choice)?;
         self.has_judged.fetch_or(report.has_judged(), Ordering::Relaxed);
@@ -163,27 +162,27 @@ impl Judged {
         self.has_judged.load(Ordering::Relaxed)
     }
 
-    fn report(&self, selection: &Selection, choice: &Choice) -> Result<GateReport, HarnessError> {
+    fn report(&self, selection: &Selection, choice: &Choice) -> Result<Report, HarnessError> {
         let mut subject = self.subject.lock().unwrap_or_else(PoisonError::into_inner);
         let report = run_selection(selection, std::slice::from_mut(&mut *subject), &self.options, &mut Silent)
             .map_err(|error| HarnessError::Suite(error.to_string()))?;
         let compared_by =
             Some(ComparedBy { choice: choice.clone(), generator: GENERATOR_VERSION, ..ComparedBy::default() });
         let explained = explain(&report, self.options.profile);
-        Ok(GateReport::of(&Report { compared_by, explained, ..report }, String::new(), None))
+        Ok(Report { compared_by, explained, ..report })
     }
 }
 
 /// Prints, where the tests run in GitHub Actions, the lines that it shows as annotations: at the line which names the formula.
-pub(crate) fn annotate(report: &GateReport) {
+pub(crate) fn annotate(report: &Report) {
     if std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true") {
         eprint!("{}", annotations(report));
     }
 }
 
 /// A line for each group that fails.
-fn annotations(report: &GateReport) -> String {
-    github::of_gate(report)
+fn annotations(report: &Report) -> String {
+    github::annotations(report)
         .lines()
         .filter(|line| line.starts_with("::error"))
         .fold(String::new(), |all, line| all + line + "\n")
@@ -191,16 +190,17 @@ fn annotations(report: &GateReport) -> String {
 
 /// What `lightmeter gate` prints of a result, where it is none that passes. A formula that is skipped passes where a file of expectations
 /// says that it is; whether anything was judged at all is seen to by whoever judges several.
-pub(crate) fn complaint(report: &GateReport) -> Option<String> {
+pub(crate) fn complaint(report: &Report) -> Option<String> {
     let Coverage { chosen, judged, .. } = report.coverage();
     let is_covered = report.has_judged() && report.coverage().is_enough(Coverage::REQUIRED);
-    let is_skipped = report.totals.skipped > 0 && judged + report.totals.skipped == chosen;
+    let skipped = report.cases().skipped;
+    let is_skipped = skipped > 0 && judged + skipped == chosen;
     if !report.is_failed() && !report.is_broken() && (is_covered || is_skipped) {
         return None;
     }
     let mut told = String::new();
     // Writing to a string does not fail.
-    let _ = text(report, &GateStyle::default(), &mut told);
+    let _ = write(report, Style::default(), &mut told);
     Some(told)
 }
 

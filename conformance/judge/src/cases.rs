@@ -4,8 +4,8 @@ use crate::{telling, worse};
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
-use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::gate::KnownFailure;
+use lightmeter_document::by_case::KnownFailure;
+use lightmeter_document::by_case::{CaseCounts, CaseTotals};
 use std::collections::BTreeMap;
 
 /// Reasons of skips that are kept.
@@ -108,8 +108,9 @@ struct CaseRange {
 /// What has become of a group's cases.
 #[derive(Clone, Debug, Default)]
 pub struct CaseTally {
-    /// The counts; their text comes last.
-    counts: CaseCounts,
+    counts: CaseTotals,
+    /// The largest error of a case that passes.
+    error_passing: f64,
     /// The sum of the finite errors of cases that pass, and how many there are.
     errors: (f64, u64),
     reasons: Vec<String>,
@@ -125,7 +126,7 @@ pub struct CaseTally {
 impl CaseTally {
     /// The counts so far.
     #[must_use]
-    pub const fn counts(&self) -> &CaseCounts {
+    pub const fn counts(&self) -> &CaseTotals {
         &self.counts
     }
 
@@ -141,14 +142,14 @@ impl CaseTally {
             self.push(case, NotPassed::Failed);
         } else {
             self.counts.passed += 1;
-            self.counts.error_passing = Number(worse(self.counts.error_passing.0, error));
+            self.error_passing = worse(self.error_passing, error);
             self.errors = (self.errors.0 + errors.0, self.errors.1 + errors.1);
         }
     }
 
     /// Adds what cases that pass err by: the greatest error, the sum of the finite ones and how many those are.
     pub fn passing(&mut self, (greatest, sum, count): (f64, f64, u64)) {
-        self.counts.error_passing = Number(worse(self.counts.error_passing.0, greatest));
+        self.error_passing = worse(self.error_passing, greatest);
         self.errors = (self.errors.0 + sum, self.errors.1 + count);
     }
 
@@ -219,17 +220,8 @@ impl CaseTally {
 
     /// Adds what became of further cases, which follow on these.
     pub fn add(&mut self, other: Self) {
-        let (own, more) = (&mut self.counts, other.counts);
-        own.asked += more.asked;
-        own.passed += more.passed;
-        own.failed += more.failed;
-        own.unjudged += more.unjudged;
-        own.broken += more.broken;
-        own.expected_failures += more.expected_failures;
-        own.skipped += more.skipped;
-        own.undeclared += more.undeclared;
-        own.missing += more.missing;
-        own.error_passing = Number(worse(own.error_passing.0, more.error_passing.0));
+        self.counts.add(&other.counts);
+        self.error_passing = worse(self.error_passing, other.error_passing);
         self.errors = (self.errors.0 + other.errors.0, self.errors.1 + other.errors.1);
         let unknown = other.reasons.into_iter().filter(|reason| !self.reasons.contains(reason)).collect::<Vec<_>>();
         self.reasons.extend(unknown);
@@ -263,12 +255,13 @@ impl CaseTally {
         #[expect(clippy::cast_precision_loss, reason = "a count of verdicts")]
         let mean = if self.errors.1 == 0 { 0.0 } else { self.errors.0 / self.errors.1 as f64 };
         CaseCounts {
+            totals: self.counts,
+            error_passing: Number(self.error_passing),
             error_mean: Number(mean),
             errors: self.errors.1,
             not_passed: self.not_passed(members, group),
             reason: (!self.reasons.is_empty()).then(|| self.reasons.join("; ")),
             smallest: self.smallest().map(|(member, case)| members[member].case_id(case)),
-            ..self.counts.clone()
         }
     }
 

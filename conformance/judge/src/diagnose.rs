@@ -4,6 +4,7 @@ use crate::image::LegalPixel;
 use crate::image::file::StoredImage;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_document::report::{Diagnosis, Problem};
 use lightmeter_scene::frame::Frame;
 
 /// An answer to one case.
@@ -27,48 +28,28 @@ impl Answered<'_> {
     }
 }
 
-/// What explains wrong answers.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Cause {
-    /// As a sentence: what explains how many of them, what would as well, and where to look.
-    pub says: String,
-    /// What alone, in words, where something explains them.
-    pub cause: Option<String>,
-    /// The names of the mistakes that explain them together, as `lightmeter mistakes` lists them. Empty where none does, and of a parameter
-    /// that is wrong.
-    pub mistakes: Vec<String>,
-}
-
-impl Cause {
-    /// What is known of it, each apart; nothing where nothing was looked for.
-    #[must_use]
-    pub fn parts(found: Option<Self>) -> (Option<String>, Option<String>, Vec<String>) {
-        found.map_or_else(Default::default, |Self { says, cause, mistakes }| (Some(says), cause, mistakes))
-    }
-}
-
 /// Knows mistakes, and tells which one explains answers. `lightmeter_faults` has the one that commands use.
 pub trait Diagnose: Sync {
     /// What explains the wrong ones of the answers to a formula. They are a sample of `failing` ones that are wrong.
-    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> Cause;
+    fn formula(&self, member: &Member, answered: &[Answered<'_>], failing: u64, profile: &Profile) -> Diagnosis;
 
     /// What is wrong with answers of which each is legal: a parameter that is a little off. `None` where nothing is found.
-    fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<String>;
+    fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<Problem>;
 
     /// What explains a wrong image of a frame.
-    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> Cause;
+    fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> Diagnosis;
 }
 
 /// A row that was answered: its inputs, the values, and which case it is.
 pub type Row<'a> = (Vec<f32>, &'a [f32], CaseRef);
 
 /// What the diagnosis of all answers to a formula says.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Told {
     /// What explains those that are wrong.
-    pub explanation: Option<Cause>,
+    pub diagnosis: Option<Diagnosis>,
     /// What is wrong with all of them together, where none is wrong by itself.
-    pub systematic: Option<String>,
+    pub systematic: Option<Problem>,
 }
 
 impl Told {
@@ -93,6 +74,6 @@ impl Told {
         let all = wrong.iter().map(|row| (row, true)).chain(right.iter().map(|row| (row, false)));
         let answered: Vec<Answered<'_>> =
             all.map(|((inputs, values, case), is_wrong)| Answered { case: *case, inputs, values, is_wrong }).collect();
-        Self { explanation: Some(diagnose.formula(member, &answered, failing, profile)), ..Self::default() }
+        Self { diagnosis: Some(diagnose.formula(member, &answered, failing, profile)), ..Self::default() }
     }
 }

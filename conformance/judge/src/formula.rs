@@ -10,7 +10,7 @@ use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::by_case::FailedAnswer;
-use lightmeter_document::run::{Failure, WorstAnswer};
+use lightmeter_document::report::{Failure, WorstAnswer};
 use lightmeter_document::{Number, Word};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -24,8 +24,6 @@ pub struct Judging<'a> {
     pub known: &'a Known,
     /// The accuracy rules.
     pub profile: &'static Profile,
-    /// What to add to a command that runs one case again.
-    pub rerun: &'a str,
     /// What random cases are drawn from.
     pub seed: u64,
     /// Failures that are expected.
@@ -306,7 +304,7 @@ fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &J
     let by_cases = stage == Stage::Answer;
     let id = member.case_id(place.case);
     Failure {
-        rerun: format!("lightmeter run '{id}' --adapter {}{}", by.adapter, by.rerun),
+        rerun: String::new(),
         id,
         adapter: by.adapter.to_owned(),
         stage: stage.name().into(),
@@ -315,7 +313,8 @@ fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &J
         output: member.spec.output_name(k),
         inputs: by_name(member, &inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         units: units(member),
-        inputs_hex: by_name(member, &inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
+        // An answer has its inputs in a row.
+        inputs_hex: if by_cases { serde_json::Map::new() } else { by_name(member, &inputs, bits_in_hex) },
         reference: Number(reference[k]),
         interval: interval(&legal[k]),
         promise: None,
@@ -332,6 +331,12 @@ fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &J
             problem: None,
         }),
     }
+}
+
+/// The bits of a number.
+#[must_use]
+pub fn bits_in_hex(x: f32) -> serde_json::Value {
+    format!("0x{:08x}", x.to_bits()).into()
 }
 
 /// A case whose answer cannot be judged: there is no number to show.
@@ -410,7 +415,7 @@ mod tests {
     }
 
     fn judging(known: &Known) -> Judging<'_> {
-        Judging { adapter: "cpu", known, profile: &WGSL, rerun: "", seed: 1, expected: &[], counts_cases: true }
+        Judging { adapter: "cpu", known, profile: &WGSL, seed: 1, expected: &[], counts_cases: true }
     }
 
     fn reported(chunk: &Chunk<'_>, words: &[u32]) -> Vec<Failure> {

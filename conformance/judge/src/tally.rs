@@ -4,7 +4,7 @@
 //! can be put together. What is kept of some cases only, the worst and the first to fail, is therefore kept by their places.
 
 use crate::{Outcome, is_worse, worse};
-use lightmeter_document::run::{Failure, Totals};
+use lightmeter_document::report::{Failure, Problem, ProblemKind, Totals};
 use std::collections::BTreeMap;
 use std::iter::Sum;
 
@@ -167,7 +167,7 @@ impl<P: Ord + Clone, F: Clone> Tally<P, F> {
 
     /// What is wrong with all verdicts together: more than 1 % of them indeterminate, hard cases apart, make a run of little.
     #[must_use]
-    pub fn problem(&self) -> Option<String> {
+    pub fn problem(&self) -> Option<Problem> {
         problem(self.random, self.totals.verdicts, self.totals.indeterminate)
     }
 }
@@ -197,16 +197,17 @@ impl<P: Ord + Clone, F: Clone> Sum for Tally<P, F> {
 const MOST_INDETERMINATE: f64 = 0.01;
 
 /// The group verdict on indeterminate values.
-fn problem(random: (u64, u64), verdicts: u64, indeterminate: u64) -> Option<String> {
+#[must_use]
+pub fn problem(random: (u64, u64), verdicts: u64, indeterminate: u64) -> Option<Problem> {
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     let share = random.1 as f64 / random.0.max(1) as f64;
     if share > MOST_INDETERMINATE {
-        return Some(format!(
-            "{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be",
-            100.0 * share
-        ));
+        let says =
+            format!("{:.1} % of the verdicts are indeterminate, hard cases apart; at most 1 % may be", 100.0 * share);
+        return Some(Problem::new(ProblemKind::Indeterminate, says));
     }
-    (random.0 > 0 && indeterminate == verdicts).then(|| "nothing but indeterminate verdicts".into())
+    let is_nothing = random.0 > 0 && indeterminate == verdicts;
+    is_nothing.then(|| Problem::new(ProblemKind::Indeterminate, "nothing but indeterminate verdicts"))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What a result was held against: known failures, an earlier result, the same cases asked once more.
 
-use lightmeter_document::gate::{GateGroup, GateReport, KnownFailure};
-use lightmeter_document::run::{Group, Report};
+use lightmeter_document::by_case::KnownFailure;
+use lightmeter_document::report::{Interrupted, Report};
 use std::fmt::{Result, Write};
 
 /// Cases that are named.
@@ -10,60 +10,51 @@ const MOST_NAMED: usize = 24;
 /// The title of what is worse than in the baseline.
 pub(crate) const BASELINE: &str = "baseline";
 
-/// What a result was held against, and what came of it.
-#[derive(Clone, Debug)]
-pub(crate) struct Against<'a> {
-    /// Whether the cases are a shard, of which nobody can tell that an expected failure passes.
-    is_shard: bool,
-    expectations: &'a [KnownFailure],
-    unstable: &'a [String],
-    regressions: &'a [String],
-    /// What is wrong with whole groups as known failures say, each with its group.
-    problems: Vec<String>,
+/// Why a result ended before its time.
+pub(crate) fn interrupted(why: &Interrupted, report: &Report) -> String {
+    let of_renderer =
+        if report.renderer.is_some() { "; what was not answered until then counts as never answered" } else { "" };
+    format!("{why}{of_renderer}")
 }
 
-impl<'a> Against<'a> {
-    /// Of a gate.
-    pub(crate) fn of_gate(report: &'a GateReport) -> Self {
-        let GateReport { expectations, unstable, regressions, .. } = report;
-        let is_shard = report.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
-        let told = |group: &GateGroup| Some(format!("{}: {}", group.name(), group.expected_problem.as_ref()?));
-        let problems = report.groups.iter().filter_map(told).collect();
-        Self { is_shard, expectations, unstable, regressions, problems }
-    }
-
-    /// Of a run.
-    pub(crate) fn of_run(report: &'a Report) -> Self {
-        let Report { expectations, unstable_cases: unstable, regressions, .. } = report;
-        let is_shard = report.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
-        let told = |group: &Group| {
-            let problem = group.expected_problem.as_ref()?;
-            Some(format!("{} on {}, {}: {problem}", group.id, group.adapter, group.place()))
-        };
-        let problems = report.groups.iter().filter_map(told).collect();
-        Self { is_shard, expectations, unstable, regressions, problems }
-    }
-
-    /// What is wrong, each on a line with its title.
-    pub(crate) fn lines(self) -> Vec<(String, String)> {
-        let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());
-        let mut said: Vec<(String, String)> = self.unstable.iter().take(MOST_NAMED).map(changed).collect();
-        said.extend(self.regressions.iter().map(|what| (BASELINE.to_owned(), what.clone())));
-        let passes = self.expectations.iter().filter(|one| !self.is_shard && one.passes_unexpectedly());
-        said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
-        said
-    }
+/// Known failures that pass, and are to be taken out. Of a shard, which has a part of their cases, nobody can tell.
+fn passing(report: &Report) -> Vec<&KnownFailure> {
+    report.passing_unexpectedly().collect()
 }
 
-/// Writes it for people.
+/// What is wrong with the whole: what broke off, and what it was held against; each on a line with its title.
+pub(crate) fn wrong(report: &Report) -> Vec<(String, String)> {
+    let mut said = vec![];
+    said.extend(report.interrupted.as_ref().map(|why| ("interrupted".to_owned(), interrupted(why, report))));
+    if let Some(renderer) = &report.renderer {
+        said.extend(renderer.incidents.iter().map(|what| ("process".to_owned(), what.clone())));
+        said.extend(renderer.problems.first.iter().map(|what| ("answers".to_owned(), what.clone())));
+    }
+    said.extend(lines(report));
+    said
+}
+
+/// What changed, what is worse, and known failures that pass, each on a line with its title.
+pub(crate) fn lines(report: &Report) -> Vec<(String, String)> {
+    let mut said = vec![];
+    let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());
+    said.extend(report.unstable_cases.iter().take(MOST_NAMED).map(changed));
+    said.extend(report.regressions.iter().map(|what| (BASELINE.to_owned(), what.clone())));
+    let passes = passing(report).into_iter();
+    said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
+    said
+}
+
+/// Writes for people what a result was held against, and what came of it.
 ///
 /// # Errors
 /// Where the writer fails.
-pub(crate) fn text(against: Against<'_>, out: &mut impl Write) -> Result {
-    listed("changed when they were asked once more", against.unstable, out)?;
-    listed("are worse than in the baseline", against.regressions, out)?;
-    for one in against.expectations.iter().filter(|one| one.failed + one.passed > 0) {
-        let said = match (one.failed, one.passes_unexpectedly() && !against.is_shard) {
+pub(crate) fn text(report: &Report, out: &mut impl Write) -> Result {
+    listed("changed when they were asked once more", &report.unstable_cases, out)?;
+    listed("are worse than in the baseline", &report.regressions, out)?;
+    let unexpected = passing(report);
+    for one in report.expectations.iter().filter(|one| one.failed + one.passed > 0) {
+        let said = match (one.failed, unexpected.contains(&one)) {
             (0, true) => "PASSES: take it out",
             (0, false) => "passes, as it may",
             _ => "fails as expected",
@@ -74,7 +65,11 @@ pub(crate) fn text(against: Against<'_>, out: &mut impl Write) -> Result {
             one.id, one.failed, one.passed, one.reason
         )?;
     }
-    against.problems.iter().try_for_each(|problem| writeln!(out, "\nas expected: {problem}"))?;
+    for group in &report.groups {
+        if let Some(problem) = group.expected_problem() {
+            writeln!(out, "\nas expected: {}: {problem}", group.name())?;
+        }
+    }
     Ok(())
 }
 

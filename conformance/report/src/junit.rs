@@ -1,11 +1,9 @@
-//! Results as JUnit XML: of a run a suite for each adapter, and a test for each group and stage; of a gate a test for each formula and scene.
+//! Results as JUnit XML: a suite for each subject, a test for each group, and a suite of what is wrong with the whole.
 
 use super::Level;
-use super::against::Against;
-use super::text;
-use crate::gate::{GateStyle, sentence, told, whole};
-use lightmeter_document::gate::GateReport;
-use lightmeter_document::run::{Group, Report};
+use super::against::wrong;
+use super::text::{self, Style, is_told_by, sentence};
+use lightmeter_document::report::{Group, Report};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
@@ -16,11 +14,13 @@ use std::time::Duration;
 pub fn to_string(report: &Report) -> Result<String, SerializeError> {
     let mut document = Document::new("lightmeter");
     for adapter in &report.adapters {
-        let mut suite = TestSuite::new(adapter.name.as_str());
+        let name = report.renderer.as_ref().map_or_else(
+            || adapter.name.clone(),
+            |renderer| format!("{} {}", renderer.identity.name, renderer.identity.version),
+        );
+        let mut suite = TestSuite::new(name);
         for group in report.groups.iter().filter(|group| group.adapter == adapter.name) {
-            let mut case = TestCase::new(format!("{} ({})", group.id, group.place()), status(group, report));
-            case.set_classname(group.id.replace('/', ".")).set_time(Duration::from_secs_f64(group.seconds));
-            suite.add_test_case(case);
+            suite.add_test_case(case(group, report));
         }
         for deviation in report.deviations.iter().filter(|deviation| deviation.adapter == adapter.name) {
             let mut status = TestCaseStatus::success();
@@ -30,52 +30,60 @@ pub fn to_string(report: &Report) -> Result<String, SerializeError> {
             }
             suite.add_test_case(TestCase::new(format!("deviation/{}", deviation.name), status));
         }
+        let warnings = report.renderer.iter().flat_map(|renderer| renderer.warnings.iter().cloned());
+        let said: Vec<String> = warnings.chain(report.notes.iter().map(ToString::to_string)).collect();
+        if !said.is_empty() {
+            suite.set_system_out(said.join("\n"));
+        }
         document.add_test_suite(suite);
     }
-    let against = Against::of_run(report).lines();
-    if !against.is_empty() {
-        let mut suite = TestSuite::new("compared");
-        for (title, what) in against {
-            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    let wrong = wrong(report);
+    if !wrong.is_empty() {
+        let mut suite = TestSuite::new("whole");
+        for (title, what) in wrong {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
             status.set_message(what);
             suite.add_test_case(TestCase::new(title, status));
         }
         document.add_test_suite(suite);
     }
-    if let Some(interrupted) = &report.interrupted {
-        let mut suite = TestSuite::new("interrupted");
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-        status.set_message(format!("{} was under way: {}", interrupted.under_way, interrupted.message));
-        suite.add_test_case(TestCase::new("interrupted", status));
-        document.add_test_suite(suite);
-    }
     document.to_string()
 }
 
+fn case(group: &Group, report: &Report) -> TestCase {
+    let is_asked = group.asked().is_some();
+    let name = if is_asked { group.name() } else { format!("{} ({})", group.id, group.place()) };
+    let mut case = TestCase::new(name, status(group, report));
+    case.set_classname(group.id.replace('/', ".")).set_time(Duration::from_secs_f64(group.seconds));
+    if let Some(source) = &group.source {
+        case.extra.insert("file".into(), source.file.as_str().into());
+        case.extra.extend(source.line.map(|line| ("line".into(), line.to_string().into())));
+    }
+    case
+}
+
 fn status(group: &Group, report: &Report) -> TestCaseStatus {
-    if let Some(reason) = group.skip_reason.as_deref() {
+    if !group.is_failed() {
+        let skipped = group.asked().filter(|counts| counts.totals.asked == counts.totals.skipped);
+        let reason = skipped.map(|counts| counts.reason.clone().unwrap_or_default());
+        let Some(reason) = reason.or_else(|| group.skip_reason.as_ref().map(ToString::to_string)) else {
+            return TestCaseStatus::success();
+        };
         let mut status = TestCaseStatus::skipped();
         status.set_message(reason);
         return status;
     }
-    if group.totals.failed == 0 && group.problem.is_none() {
-        return TestCaseStatus::success();
-    }
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-    let mut message = format!("{} of {} verdicts failed", group.totals.failed, group.totals.verdicts);
-    for more in group.explanation.iter().chain(&group.problem) {
-        message += &format!("; {more}");
-    }
-    status.set_message(message);
+    status.set_message(sentence(group));
     let mut description = String::new();
-    let of_group = |id: &str| id.strip_prefix(&group.id).is_some_and(|rest| rest.starts_with('/'));
-    for failure in report
-        .failures
-        .iter()
-        .filter(|f| f.adapter == group.adapter && f.stage == group.stage && f.target == group.target && of_group(&f.id))
-    {
-        // Writing to a string does not fail.
-        let _ = text::failure(failure, Level::Verbose, &mut description);
+    let failures = report.failures.iter().filter(|failure| is_told_by(group, failure));
+    // Writing to a string does not fail.
+    if group.asked().is_some() {
+        let _ = text::asked(group, &failures.collect::<Vec<_>>(), Style::default(), &mut description);
+    } else {
+        failures.for_each(|failure| {
+            let _ = text::failure(failure, Level::Verbose, &mut description);
+        });
     }
     for (shader, place) in
         report.shader.iter().flat_map(|shader| shader.places(&group.id).map(move |place| (shader, place)))
@@ -84,44 +92,4 @@ fn status(group: &Group, report: &Report) -> TestCaseStatus {
     }
     status.set_description(description);
     status
-}
-
-/// A gate's result: a test for each formula and scene.
-///
-/// # Errors
-/// Where it cannot be written as XML.
-pub fn of_gate(report: &GateReport) -> Result<String, SerializeError> {
-    let mut document = Document::new("lightmeter gate");
-    let mut suite = TestSuite::new(format!("{} {}", report.renderer.name, report.renderer.version));
-    for group in &report.groups {
-        let mut status = TestCaseStatus::success();
-        if group.is_failed() {
-            status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-            status.set_message(sentence(group));
-            let mut description = String::new();
-            // Writing to a string does not fail.
-            let _ = told(group, &report.failures, &GateStyle::default(), &mut description);
-            status.set_description(description);
-        } else if group.asked == group.skipped {
-            status = TestCaseStatus::skipped();
-            status.set_message(group.reason.clone().unwrap_or_default());
-        }
-        let mut case = TestCase::new(group.name(), status);
-        case.set_classname(group.id.split('/').next().unwrap_or_default());
-        if let Some(source) = &group.source {
-            case.extra.insert("file".into(), source.file.as_str().into());
-            case.extra.extend(source.line.map(|line| ("line".into(), line.to_string().into())));
-        }
-        suite.add_test_case(case);
-    }
-    if !report.warnings.is_empty() {
-        suite.set_system_out(report.warnings.join("\n"));
-    }
-    for (title, what) in whole(report) {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-        status.set_message(what);
-        suite.add_test_case(TestCase::new(title, status));
-    }
-    document.add_test_suite(suite);
-    document.to_string()
 }

@@ -3,7 +3,6 @@
 mod against;
 #[cfg(feature = "pages")]
 pub mod bench;
-pub mod gate;
 pub mod github;
 #[cfg(feature = "pages")]
 pub mod html;

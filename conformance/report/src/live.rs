@@ -1,17 +1,16 @@
 //! What fails, as text, as soon as it is judged.
 
-use crate::gate::{GateStyle, MOST_TOLD, told};
-use crate::text::{failing_group, failure, formula_of};
+use crate::Level;
+use crate::text::{MOST_TOLD, Style, asked, failure, formula_of, judged};
 use lightmeter_document::event::Event;
-use lightmeter_document::gate::{GateFailure, GateGroup};
-use lightmeter_document::run::{Failure, Group};
+use lightmeter_document::report::{Failure, Group};
 use std::collections::BTreeSet;
 use std::fmt::{Result, Write};
 
-/// Tells each group that fails once, and of each formula on an adapter one failing case.
+/// Tells each group that fails once, and of each formula on a subject one failing case.
 #[derive(Debug, Default)]
 pub struct Live {
-    style: GateStyle,
+    style: Style,
     groups: BTreeSet<(String, String, String)>,
     formulas: BTreeSet<(String, String)>,
     /// Groups of a renderer that were told.
@@ -19,41 +18,34 @@ pub struct Live {
 }
 
 impl Live {
-    /// One that tells in this style.
+    /// One that says so much.
     #[must_use]
-    pub fn new(style: GateStyle) -> Self {
-        Self { style, ..Self::default() }
+    pub fn new(level: Level) -> Self {
+        Self { style: Style { level, is_told: true, ..Style::default() }, ..Self::default() }
     }
 
     /// What there is to say of an event; nothing of most.
     #[must_use]
     pub fn text(&mut self, event: &Event<'_>) -> String {
         let mut out = String::new();
-        if let Event::Judged { group, failures, .. } = event
-            && let Some(counts) = &group.by_case
-            && group.stage == "answer"
-        {
-            let group = GateGroup::of(group, counts);
-            if group.is_failed() && self.asked < MOST_TOLD {
-                self.asked += 1;
-                let failures: Vec<GateFailure> = failures.iter().filter_map(|one| GateFailure::of(one)).collect();
-                let Ok(()) = told(&group, &failures, &self.style, &mut out) else { unreachable!("a string takes all") };
-            }
-            return out;
-        }
         if let Event::Judged { group, failures, is_scouted } = event
-            && (group.totals.failed > 0 || group.problem.is_some())
+            && group.is_failed()
         {
-            let Ok(()) = self.group(group, failures, *is_scouted, &mut out) else { unreachable!("a string takes all") };
+            let told = self.group(group, failures, *is_scouted, &mut out);
+            let Ok(()) = told else { unreachable!("a string takes all") };
         }
         out
     }
 
     fn group(&mut self, group: &Group, failures: &[&Failure], is_scouted: bool, out: &mut String) -> Result {
+        if group.asked().is_some() {
+            self.asked += 1;
+            return if self.asked <= MOST_TOLD { asked(group, failures, self.style, out) } else { Ok(()) };
+        }
         let key = (group.id.clone(), group.adapter.clone(), group.place());
         let is_new = self.groups.insert(key);
         if is_new {
-            failing_group(group, if is_scouted { " of the first" } else { " of" }, out)?;
+            judged(group, if is_scouted { " of the first" } else { " of" }, out)?;
         }
         let mut told = is_new;
         for one in failures {
@@ -69,12 +61,21 @@ impl Live {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter_document::run::Totals;
+    use lightmeter_document::report::{Diagnosis, Explanation, Standing, Totals};
 
     #[test]
     fn a_group_that_fails_is_told_once() {
         let mut group = Group::new("fog/linear".into(), "lavapipe".into(), "compute");
-        group.explanation = Some("2 of 2 failing cases are explained by: it clamps".into());
+        let explanation = Explanation {
+            says: "it clamps".into(),
+            mistakes: vec![],
+            parameter: None,
+            explained: 2,
+            open: 0,
+            standing: Standing::Best,
+        };
+        group.diagnosis =
+            Some(Diagnosis { failing: 2, looked_at: 2, explanations: vec![explanation], ..Diagnosis::default() });
         let (mut live, mut said) = (Live::default(), String::new());
         for (failed, is_scouted) in [(0, true), (2, true), (400, false)] {
             group.totals = Totals { verdicts: 10 * failed, failed, ..Totals::default() };

@@ -1,6 +1,6 @@
 //! The probes of NaN, infinity, subnormals and signed zero, for people to read.
 
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_document::special::{
     ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, PromiseDeviation, SpecialReport,
 };

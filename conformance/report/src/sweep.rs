@@ -1,6 +1,6 @@
 //! A sweep's result for people.
 
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_document::sweep::{
     Description, ExactFloat, Statistics, StoreCounts, SweepDocument, SweepInput, SweepVerdict,
 };

@@ -5,7 +5,7 @@ use super::{Status, foreign};
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
 use lightmeter::cases::Spec;
-use lightmeter::document::run::JudgedAs;
+use lightmeter::document::report::JudgedAs;
 use lightmeter::select::catalogue;
 use lightmeter_adapt::bind::{Bound, Found, ShaderBinding, bind};
 use lightmeter_adapt::source::ShaderSource;

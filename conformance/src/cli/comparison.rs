@@ -3,7 +3,7 @@
 use super::say;
 use anyhow::bail;
 use clap::Args;
-use lightmeter::document::Document;
+use lightmeter::document::report::Report;
 use lightmeter::gate::baseline::{self, Baseline, BaselineError, Standard};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::plan::unmatched;
@@ -63,21 +63,17 @@ impl Comparison {
         Ok(self.expect.as_deref().map(Expectations::read).transpose()?.unwrap_or_default())
     }
 
-    /// The earlier result, read by `read`; `None` where there is none to compare with.
-    pub(crate) fn earlier(
-        &self,
-        read: impl Fn(&Path) -> Result<Baseline, BaselineError>,
-    ) -> Result<Option<Earlier>, BaselineError> {
+    /// The earlier result, of a renderer that is asked or of a run; `None` where there is none to compare with.
+    pub(crate) fn earlier(&self, is_asked: bool) -> Result<Option<Earlier>, BaselineError> {
         let path = self.baseline.as_ref().filter(|_| !self.update_baseline);
-        let earlier = |path: &PathBuf| Ok(Earlier { path: path.clone(), baseline: read(path)?, growth: self.growth });
+        let earlier = |path: &PathBuf| {
+            Ok(Earlier { path: path.clone(), baseline: Baseline::read(path, is_asked)?, growth: self.growth })
+        };
         path.map(earlier).transpose()
     }
 
     /// Writes the result as the baseline, where that is asked for.
-    pub(crate) fn update<T: Document>(&self, report: &T) -> Result<(), BaselineError>
-    where
-        Standard: for<'a> From<&'a T>,
-    {
+    pub(crate) fn update(&self, report: &Report) -> Result<(), BaselineError> {
         let Some(path) = self.baseline.as_ref().filter(|_| self.update_baseline) else { return Ok(()) };
         match baseline::update(report, path) {
             Ok(()) => say(&format!("the baseline {} is this result now", path.display())),

@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use clap::{Arg, Command};
 use lightmeter::arithmetic::Profile;
 use lightmeter::arithmetic::profile::PROFILES;
-use lightmeter::document::run::ConfigUse;
+use lightmeter::document::report::ConfigUse;
 use lightmeter::files::read;
 use serde::{Deserialize, Deserializer};
 use std::ffi::{OsStr, OsString};

@@ -7,10 +7,11 @@ use super::observed::is_time_told;
 use super::options::{AlsoJson, ReportFormat, Required, ShardArgument, Targets};
 use super::pack::{Cases, nothing_to_ask};
 use super::progress::{Bar, Stream};
+use super::result::{status, written};
 use super::say;
-use super::signals::{status_of, stopped_by_signals};
+use super::signals::stopped_by_signals;
 use super::terminal::level;
-use super::{NothingToRun, Status, command, quoted, show, writable};
+use super::{Status, command, quoted, show, writable};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
@@ -19,20 +20,19 @@ use lightmeter::device::Code;
 use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Stop;
-use lightmeter::document::gate::GateReport;
 use lightmeter::document::pack::Choice;
-use lightmeter::document::run::Report;
+use lightmeter::document::report::Report;
 use lightmeter::faults::{Mistakes, explain};
 use lightmeter::files::lines;
 use lightmeter::filter::Filter;
 use lightmeter::gate::answers::{AnswerFile, FileRenderer};
-use lightmeter::gate::baseline::{Baseline, Standard};
+use lightmeter::gate::baseline::Standard;
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::pack;
 use lightmeter::gate::plan::{GatePlan, unmatched};
 use lightmeter::gate::process::{Asking, Limits, ProcessRenderer, Starter};
 use lightmeter::options::Options;
-use lightmeter::report::{Level, gate as outputs, github, html, junit};
+use lightmeter::report::{Level, text};
 use lightmeter::run::run;
 use lightmeter::select::Shard;
 use lightmeter::special::verdict;
@@ -89,6 +89,9 @@ pub(crate) struct Gate {
     fail_fast: bool,
     #[command(flatten)]
     comparison: Comparison,
+    /// Of a shard: leave the samples out by which `merge` tells what explains failures
+    #[arg(long)]
+    no_samples: bool,
     #[command(flatten)]
     required: Required,
     /// How the result is written
@@ -112,7 +115,7 @@ impl Gate {
             anyhow::bail!("--memory needs the limits that Unix sets for a process; leave it out on this system");
         }
         let expectations = self.comparison.expectations()?;
-        let earlier = self.comparison.earlier(Baseline::of_gate)?;
+        let earlier = self.comparison.earlier(true)?;
         matches_something(&expectations)?;
         let start = Instant::now();
         let (plan, answers) = self.asked()?;
@@ -211,7 +214,7 @@ impl Gate {
         expectations: &Expectations,
         images: &Images,
         stop: &Stop,
-    ) -> anyhow::Result<GateReport> {
+    ) -> anyhow::Result<Report> {
         let choice = plan.choice.clone();
         let runs = if self.exec.is_some() { self.runs } else { answers.len() as u64 };
         let asked = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
@@ -237,6 +240,8 @@ impl Gate {
             images: self.keeps_images().then(|| images.folder.clone()),
             shard: self.shard.0,
             diagnose: Some(&Mistakes),
+            ask: self.again(),
+            samples_kept: !self.no_samples,
             stop: stop.clone(),
             expected: expectations.of(&hello.renderer, &hello.version),
             runs,
@@ -246,10 +251,10 @@ impl Gate {
         if self.is_read_by_people() {
             if level() > Level::Quiet {
                 let mut line = String::new();
-                outputs::begun(&hello.identity(), options.profile.name, &mut line)?;
+                text::begun(&hello.identity(), options.profile.name, &mut line)?;
                 show(&lines(&line), None)?;
             }
-            bar = bar.live(Stream::Output, self.again());
+            bar = bar.live(Stream::Output);
         }
         let report = run(&mut [subject], &options, &mut bar);
         bar.bar.finish_and_clear();
@@ -263,9 +268,10 @@ impl Gate {
             shard,
         };
         let report = report?;
-        let explained = explain(&report, options.profile);
-        let report = Report { compared_by: Some(compared_by), config: used(), made_at: now(), explained, ..report };
-        Ok(GateReport::of(&report, command(), self.again()))
+        // Of shards, `merge` works it out.
+        let explained = if self.is_shard() { vec![] } else { explain(&report, options.profile) };
+        let command = Some(command());
+        Ok(Report { compared_by: Some(compared_by), config: used(), made_at: now(), command, explained, ..report })
     }
 
     /// Whether reference, result and error map of a scene that fails are written.
@@ -315,20 +321,9 @@ impl Gate {
         self.format == ReportFormat::Text && self.out.is_none()
     }
 
-    fn write(&self, report: &GateReport) -> anyhow::Result<String> {
-        Ok(match self.format {
-            ReportFormat::Json => report.to_json()?,
-            ReportFormat::Junit => junit::of_gate(report)?,
-            ReportFormat::Github => github::of_gate(report),
-            ReportFormat::Html => html::of_gate(report),
-            ReportFormat::Text => {
-                let mut out = String::new();
-                let style =
-                    outputs::GateStyle { level: level(), is_told: self.is_read_by_people(), again: self.again() };
-                outputs::text(report, &style, &mut out)?;
-                lines(&out).into_owned()
-            }
-        })
+    fn write(&self, report: &Report) -> anyhow::Result<String> {
+        let style = text::Style { is_told: self.is_read_by_people(), level: level(), ..text::Style::default() };
+        written(report, self.format, style)
     }
 }
 
@@ -353,26 +348,5 @@ impl Drop for Images {
         if !self.is_kept {
             let _ = std::fs::remove_dir_all(&self.folder);
         }
-    }
-}
-
-/// A renderer that broke off, or wrote what is no answer, ends with 4 whatever else is right.
-pub(crate) fn status(report: &GateReport, required: Required) -> Status {
-    match &report.interrupted {
-        Some(interrupted) if !(interrupted.at_first_failure && report.is_broken()) => return status_of(interrupted),
-        _ => {}
-    }
-    if report.is_broken() {
-        Status::Device
-    } else if report.is_failed() {
-        Status::Failed
-    } else if report.has_judged() {
-        required.status(report.coverage())
-    } else {
-        let error = NothingToRun(
-            "nothing was judged: the renderer declares or answers none of these cases, or skips them all".into(),
-        );
-        say(&format!("error: {error}"));
-        Status::Nothing
     }
 }

@@ -10,7 +10,7 @@ use clap::Args;
 use lightmeter::arithmetic::Profile;
 use lightmeter::document::Document as _;
 use lightmeter::document::identify::{FormulaCandidate, IdentifyDocument, SCHEMA};
-use lightmeter::document::run::Report;
+use lightmeter::document::report::Report;
 use lightmeter::document::thousands;
 use lightmeter::faults::Mistakes;
 use lightmeter::files::lines;
@@ -136,10 +136,10 @@ pub(super) fn candidates(report: &Report, adapted: &[Adapted]) -> Vec<FormulaCan
         for group in report.groups.iter().filter(|group| group.id == *id) {
             candidate.verdicts += group.totals.verdicts - group.totals.indeterminate;
             candidate.failed += group.totals.failed;
-            candidate.problem = candidate.problem.or_else(|| group.problem.clone());
-            candidate.explanation = candidate.explanation.or_else(|| group.explanation.clone());
+            candidate.problem = candidate.problem.or_else(|| group.problem());
+            candidate.explanation = candidate.explanation.or_else(|| group.diagnosis.as_ref().map(ToString::to_string));
             if candidate.mistakes.is_empty() {
-                candidate.mistakes.clone_from(&group.mistakes);
+                candidate.mistakes = group.mistakes().iter().map(ToString::to_string).collect();
             }
         }
         candidates.push(candidate);

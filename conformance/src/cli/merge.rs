@@ -9,13 +9,12 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
 use lightmeter::document::Document as _;
-use lightmeter::document::gate::GateReport;
-use lightmeter::document::run::Report;
+use lightmeter::document::report::{self, Report};
 use lightmeter::document::sweep::{ExactFloat, SweepDocument};
-use lightmeter::faults::explain;
-use lightmeter::files::{lines, read, shown};
+use lightmeter::faults::{Mistakes, explain};
+use lightmeter::files::{read, shown};
 use lightmeter::merge::merge;
-use lightmeter::report::{gate as outputs, github, html, junit, text};
+use lightmeter::report::text;
 use lightmeter::sweep::file;
 use std::path::{Path, PathBuf};
 
@@ -54,30 +53,23 @@ impl Merge {
     /// Joins the shards of a run or of a gate; `None` where the first file is one of a sweep.
     fn of_runs(&self) -> anyhow::Result<Option<Status>> {
         let Some(first) = self.results.first() else { return Ok(None) };
-        let is_gate = match schema(first)?.as_str() {
-            lightmeter::document::gate::SCHEMA => true,
-            lightmeter::document::run::SCHEMA => false,
+        match schema(first)?.as_str() {
             lightmeter::document::sweep::SCHEMA => return Ok(None),
+            // What is of an earlier version says so itself.
+            report::SCHEMA | "lightmeter.run/1" | "lightmeter.gate/1" => {}
             other => bail!(
                 "{}: {}; expected the JSON that `run`, `gate` or `sweep` writes with --shard I/N and --format json",
                 first.display(),
                 if other.is_empty() { "it is no result".to_owned() } else { format!("its schema is `{other}`") }
             ),
-        };
-        let (mut parts, mut again) = (vec![], None);
+        }
+        let mut parts = vec![];
         for path in &self.results {
             let failed = || format!("cannot read {}", path.display());
             let text = read::text(path, read::MOST_TEXT).with_context(failed)?;
-            let report = if is_gate {
-                let gate = GateReport::read(&text).with_context(failed)?;
-                again = again.or_else(|| gate.again.clone());
-                Report::from(gate)
-            } else {
-                Report::read(&text).with_context(failed)?
-            };
-            parts.push((path.clone(), report));
+            parts.push((path.clone(), Report::read(&text).with_context(failed)?));
         }
-        let whole = merge(parts)?;
+        let whole = merge(parts, &Mistakes)?;
         // What explains the first failing or the worst case of each formula: of the whole, which may be another one than a shard's.
         let explained = Profile::by_name(&whole.profile).map_or_else(Vec::new, |profile| explain(&whole, profile));
         let whole = Report {
@@ -87,13 +79,9 @@ impl Merge {
             required: Some(self.required.part()),
             ..whole
         };
-        if is_gate {
-            let gate = GateReport::of(&whole, command(), again);
-            self.format.emit(&self.written_gate(&gate)?, self.out.as_deref())?;
-            return Ok(Some(super::gate::status(&gate, self.required)));
-        }
-        self.format.emit(&self.written_run(&whole)?, self.out.as_deref())?;
-        Ok(Some(super::run::status(&whole, self.required)))
+        let style = text::Style { level: level(), ..text::Style::default() };
+        self.format.emit(&super::result::written(&whole, self.format, style)?, self.out.as_deref())?;
+        Ok(Some(super::result::status(&whole, self.required)))
     }
 
     /// How the result of a sweep is written.
@@ -103,37 +91,6 @@ impl Merge {
             ReportFormat::Json => PageFormat::Json,
             ReportFormat::Html => PageFormat::Html,
             ReportFormat::Junit | ReportFormat::Github => bail!("a sweep is written as text, json or html"),
-        })
-    }
-
-    fn written_gate(&self, gate: &GateReport) -> anyhow::Result<String> {
-        Ok(match self.format {
-            ReportFormat::Json => gate.to_json()?,
-            ReportFormat::Junit => junit::of_gate(gate)?,
-            ReportFormat::Github => github::of_gate(gate),
-            ReportFormat::Html => html::of_gate(gate),
-            ReportFormat::Text => {
-                let mut out = String::new();
-                let style = outputs::GateStyle { level: level(), ..outputs::GateStyle::default() };
-                outputs::text(gate, &style, &mut out)?;
-                lines(&out).into_owned()
-            }
-        })
-    }
-
-    fn written_run(&self, whole: &Report) -> anyhow::Result<String> {
-        Ok(match self.format {
-            ReportFormat::Json => whole.to_json()?,
-            ReportFormat::Junit => junit::to_string(whole)?,
-            ReportFormat::Github => github::of_run(whole),
-            ReportFormat::Html => html::of_run(whole),
-            ReportFormat::Text => {
-                let style =
-                    text::Style { detail: text::Detail::Families, timing: false, is_told: false, level: level() };
-                let mut out = String::new();
-                text::write(whole, style, &mut out)?;
-                lines(&out).into_owned()
-            }
         })
     }
 }

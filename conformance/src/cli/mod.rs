@@ -25,6 +25,7 @@ mod page;
 mod playground;
 mod progress;
 mod render;
+mod result;
 mod run;
 mod schema;
 mod selftest;

@@ -6,8 +6,7 @@ use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
 use lightmeter::document::Document as _;
 use lightmeter::document::bench::{self, BenchDocument};
-use lightmeter::document::gate::{self, GateReport};
-use lightmeter::document::run::{self, ImageUse, Report};
+use lightmeter::document::report::{ImageUse, Report, SCHEMA};
 use lightmeter::document::selftest as caught;
 use lightmeter::document::sweep::{self, SweepDocument};
 use lightmeter::files::read;
@@ -133,7 +132,10 @@ impl Page {
         for path in &self.runs {
             let failed = || format!("cannot read {}", path.display());
             let json = read::text(path, read::MOST_TEXT).with_context(failed)?;
-            reports.push((path.file_stem().unwrap_or_default().to_string_lossy(), run_of(&json).with_context(failed)?));
+            reports.push((
+                path.file_stem().unwrap_or_default().to_string_lossy(),
+                Report::read(&json).with_context(failed)?,
+            ));
         }
         let named: Vec<(&str, &Report)> = reports.iter().map(|(name, report)| (&**name, report)).collect();
         let is_html = self.out.as_ref().and_then(|out| out.extension()).is_some_and(|end| end == "html");
@@ -154,7 +156,11 @@ impl Page {
         for path in &self.runs {
             let failed = || format!("cannot read {}", path.display());
             let json = read::text(path, read::MOST_TEXT).with_context(failed)?;
-            gates.push(GateReport::read(&json).with_context(failed)?);
+            let report = Report::read(&json).with_context(failed)?;
+            if report.renderer.is_none() {
+                bail!("{}: it is the JSON of `run`; expected that of `gate`", path.display());
+            }
+            gates.push(report);
         }
         let mut text = String::new();
         renderers::markdown(&gates, &mut text)?;
@@ -241,15 +247,10 @@ pub(crate) fn swept(document: SweepDocument) -> Swept {
 fn report_of(json: &str, folder: &Path) -> anyhow::Result<String> {
     let document: serde_json::Value = serde_json::from_str(json).context("it is not JSON")?;
     match document["schema"].as_str().unwrap_or("none") {
-        run::SCHEMA => {
+        SCHEMA | "lightmeter.run/1" | "lightmeter.gate/1" => {
             let mut report = Report::read(json)?;
             found(report.groups.iter_mut().filter_map(|group| group.image.as_mut()), folder);
-            Ok(html::of_run(&report))
-        }
-        gate::SCHEMA => {
-            let mut gate = GateReport::read(json)?;
-            found(gate.groups.iter_mut().filter_map(|group| group.image.as_mut()), folder);
-            Ok(html::of_gate(&gate))
+            Ok(html::of_report(&report))
         }
         bench::SCHEMA => html::of_bench(&BenchDocument::read(json)?).map_err(anyhow::Error::from_boxed),
         sweep::SCHEMA => Ok(html::of_sweeps(&[swept(file::parse(json).map_err(anyhow::Error::msg)?)])?),
@@ -274,14 +275,6 @@ fn found<'a>(images: impl Iterator<Item = &'a mut ImageUse>, folder: &Path) {
             "{} pictures of the result are not there, such as {first}: the page is made without them",
             missing.len()
         ));
-    }
-}
-
-/// A run, or a gate as one.
-fn run_of(json: &str) -> anyhow::Result<Report> {
-    match GateReport::read(json) {
-        Ok(gate) => Ok(gate.into()),
-        Err(_) => Ok(Report::read(json)?),
     }
 }
 

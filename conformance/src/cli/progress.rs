@@ -7,7 +7,6 @@ use lightmeter::browser::{PageGroup, PageState, Session};
 use lightmeter::document::event::{Event, Observer, Stop};
 use lightmeter::files::lines;
 use lightmeter::report::Level;
-use lightmeter::report::gate::GateStyle;
 use lightmeter::report::live::Live;
 use std::sync::Arc;
 
@@ -45,10 +44,9 @@ impl Bar {
         Self { bar, live: None, fail_fast: None, failed: 0, session: None, is_silent: true }
     }
 
-    /// The same, that tells what fails as soon as it is judged; of a renderer, with the command that asks for a case again.
-    pub(crate) fn live(self, stream: Stream, again: Option<String>) -> Self {
-        let style = GateStyle { level: terminal::level(), is_told: true, again };
-        Self { live: Some((Live::new(style), stream)), ..self }
+    /// The same, that tells what fails as soon as it is judged.
+    pub(crate) fn live(self, stream: Stream) -> Self {
+        Self { live: Some((Live::new(terminal::level()), stream)), ..self }
     }
 
     /// The same, that shows a browser's page how far the work has come.
@@ -74,7 +72,7 @@ impl Observer for Bar {
             Event::Group(id) => self.bar.set_message((*id).to_owned()),
             Event::Advanced(work) => self.bar.inc(*work),
             Event::Judged { group, is_scouted, .. } => {
-                let is_failed = group.totals.failed > 0 || group.problem.is_some();
+                let is_failed = group.is_failed();
                 if is_failed && !is_scouted {
                     self.failed += 1;
                     let groups = if self.failed == 1 { "group fails" } else { "groups fail" };
@@ -120,13 +118,13 @@ fn note(told: &mut PageState, event: &Event<'_>, picture: Option<usize>) {
             let target = group.target.iter().map(|target| format!(", {target}"));
             let stage = std::iter::once(group.stage.to_string()).chain(target).collect();
             let failed = group.totals.failed;
-            told.failed += u64::from(failed > 0 || group.problem.is_some());
+            told.failed += u64::from(group.is_failed());
             told.groups.push(PageGroup {
                 id: group.id.clone(),
                 stage,
                 verdicts: group.totals.verdicts,
                 failed,
-                why: [&group.cause, &group.problem, &group.explanation].into_iter().find_map(Clone::clone),
+                why: group.cause().or_else(|| group.problem()).or_else(|| group.reasons().next()),
                 picture,
             });
         }

@@ -5,9 +5,10 @@ use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
 use super::options::{AlsoJson, Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
+use super::result::{status, written};
 use super::say;
 use super::shader::hash_of;
-use super::signals::{status_of, stopped_by_signals};
+use super::signals::stopped_by_signals;
 use super::terminal::level;
 use super::{Status, abandon, command, writable};
 use clap::Args;
@@ -19,17 +20,16 @@ use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Stop;
 use lightmeter::document::pack::Choice as CaseChoice;
-use lightmeter::document::run::{Identity, Report};
+use lightmeter::document::report::{Identity, Report};
 use lightmeter::document::thousands;
 use lightmeter::faults::{Mistakes, explain};
-use lightmeter::files::lines;
 use lightmeter::filter::Filter;
-use lightmeter::gate::baseline::{Baseline, Standard};
+use lightmeter::gate::baseline::Standard;
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::judge::cases::ExpectedFailure;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::options::Options;
-use lightmeter::report::{github, html, junit, text};
+use lightmeter::report::{html, text};
 use lightmeter::run::run;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::select::scene_id;
@@ -74,6 +74,9 @@ pub(crate) struct Run {
     fail_fast: bool,
     #[command(flatten)]
     comparison: Comparison,
+    /// Of a shard: leave the samples out by which `merge` tells what explains failures
+    #[arg(long)]
+    no_samples: bool,
     #[command(flatten)]
     required: Required,
     /// How the result is written
@@ -136,7 +139,7 @@ impl Run {
             self.choice.shaders.own.part()?;
         }
         let expectations = self.comparison.expectations()?;
-        let earlier = self.comparison.earlier(Baseline::of_run)?;
+        let earlier = self.comparison.earlier(false)?;
         matches_something(&expectations)?;
         let shard = self.amount.shard.0;
         let named = self.filter.iter().filter_map(|glob| separate_of(glob)).collect();
@@ -150,6 +153,7 @@ impl Run {
         options.stop = stopped_by_signals()?;
         options.runs = self.runs;
         options.counts_cases = true;
+        options.samples_kept = !self.no_samples;
         writable(self.out.as_deref())?;
         let [expect, baseline] = self.comparison.files();
         self.also_json.is_writable([("out", self.out.as_deref()), ("expect", expect), ("baseline", baseline)])?;
@@ -171,7 +175,7 @@ impl Run {
         options.expected = known_failures(&expectations, &subjects);
         let stream = if self.is_read_by_people() { Stream::Output } else { Stream::Error };
         let fail_fast = self.fail_fast.then(|| options.stop.clone());
-        let mut bar = Bar::new(None, "cases").live(stream, None).fail_fast(fail_fast).shown_to(session.clone());
+        let mut bar = Bar::new(None, "cases").live(stream).fail_fast(fail_fast).shown_to(session.clone());
         let report = run(&mut subjects, &options, &mut bar);
         bar.bar.finish_and_clear();
         let report = match report {
@@ -195,7 +199,8 @@ impl Run {
             ..report
         };
         report.shaders_hash = hash_of(&options.code)?;
-        report.explained = explain(&report, options.profile);
+        // Of shards, `merge` works it out.
+        report.explained = if is_shard { vec![] } else { explain(&report, options.profile) };
         // What was not judged for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
         let regressions = whole.map(|earlier| earlier.compare(&Standard::from(&report), is_shard)).transpose();
@@ -203,7 +208,7 @@ impl Run {
         (report.mended, report.added) =
             whole.map(|earlier| earlier.progress(&Standard::from(&report))).unwrap_or_default();
         if let Some(session) = &session {
-            session.tell_the_end(said_of(&report), Some([html::of_run(&report), report.to_json()?]));
+            session.tell_the_end(said_of(&report), Some([html::of_report(&report), report.to_json()?]));
         }
         let emitted = self.format.emit(&self.write(&report)?, self.out.as_deref());
         let kept = self.also_json.emit(|| report.to_json());
@@ -239,20 +244,9 @@ impl Run {
     }
 
     fn write(&self, report: &Report) -> anyhow::Result<String> {
-        Ok(match self.format {
-            ReportFormat::Json => report.to_json()?,
-            ReportFormat::Junit => junit::to_string(report)?,
-            ReportFormat::Github => github::of_run(report),
-            ReportFormat::Html => html::of_run(report),
-            ReportFormat::Text => {
-                let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };
-                let mut out = String::new();
-                let style =
-                    text::Style { detail, timing: self.timing, is_told: self.is_read_by_people(), level: level() };
-                text::write(report, style, &mut out)?;
-                lines(&out).into_owned()
-            }
-        })
+        let detail = if self.groups { text::Detail::Groups } else { text::Detail::Families };
+        let style = text::Style { detail, timing: self.timing, is_told: self.is_read_by_people(), level: level() };
+        written(report, self.format, style)
     }
 }
 
@@ -286,28 +280,6 @@ fn known_failures(expectations: &Expectations, subjects: &[Subject]) -> Vec<Expe
     known
 }
 
-/// Nothing ran where every case was skipped, or every verdict permits anything.
-pub(crate) fn status(report: &Report, required: Required) -> Status {
-    if let Some(interrupted) = &report.interrupted {
-        return status_of(interrupted);
-    }
-    if !report.is_success() {
-        return Status::Failed;
-    }
-    let totals = &report.totals;
-    let only_witnesses = totals.cases == 0 && !report.deviations.is_empty();
-    if totals.passed + totals.expected_failures == 0 && !only_witnesses {
-        let why = if totals.cases == 0 {
-            "no deviation concerns the adapter"
-        } else {
-            "every case was skipped or indeterminate"
-        };
-        say(&format!("error: nothing was judged: {why}"));
-        return Status::Nothing;
-    }
-    required.status(report.coverage())
-}
-
 /// The filter, each of whose globs must match something.
 pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Option<u32>) -> anyhow::Result<Filter> {
     let catalogue = catalogue_of(samples);
@@ -331,25 +303,4 @@ pub(crate) fn matching(globs: &[String], cases: u64, samples: &Samples, size: Op
         }
     }
     Ok(Filter::new(globs)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use lightmeter::document::run::Interrupted;
-
-    #[test]
-    fn a_run_that_a_device_ended_says_so_and_ends_with_4() {
-        let mut report = Report::empty(1, "wgsl".into(), vec![], vec![]);
-        let interrupted =
-            |signal| Some(Interrupted { signal, ..Interrupted::by_device("blend/max", &"the device failed") });
-        report.interrupted = interrupted(Some(signal_hook::consts::SIGTERM));
-        assert_eq!(status(&report, Required::default()), Status::Terminated);
-        report.interrupted = interrupted(None);
-        assert_eq!(status(&report, Required::default()), Status::Device);
-        let mut text = String::new();
-        let style = text::Style { detail: text::Detail::Families, timing: false, is_told: false, level: level() };
-        text::write(&report, style, &mut text).expect("a string takes it");
-        assert!(text.contains("interrupted: ") && text.contains("✗ "), "{text}");
-    }
 }

@@ -7,12 +7,11 @@ use lightmeter::document::bench::BenchDocument;
 use lightmeter::document::bench::recommendation::Recommendation;
 use lightmeter::document::effects::EffectsDocument;
 use lightmeter::document::frame::FrameDocument;
-use lightmeter::document::gate::GateReport;
 use lightmeter::document::identify::IdentifyDocument;
 use lightmeter::document::list::{CasesDocument, FormulasDocument};
 use lightmeter::document::mistakes::MistakesDocument;
 use lightmeter::document::pack::Manifest;
-use lightmeter::document::run::Report;
+use lightmeter::document::report::Report;
 use lightmeter::document::selftest::SelftestDocument;
 use lightmeter::document::show::ShowDocument;
 use lightmeter::document::special::SpecialReport;
@@ -28,6 +27,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct Schema {
     /// Of what
+    #[arg(value_enum)]
     of: Of,
     /// Write the schema to a file
     #[arg(long, value_name = "FILE")]
@@ -38,12 +38,16 @@ pub(crate) struct Schema {
 enum Of {
     /// A scene
     Scene,
-    /// The JSON of `run`
+    /// The JSON of `run`, `gate` and `merge`
+    Report,
+    /// What stands in the place of these says so.
+    #[value(hide = true)]
     Run,
+    /// The same.
+    #[value(hide = true)]
+    Gate,
     /// The JSON of `special`
     Special,
-    /// The JSON of `gate`
-    Gate,
     /// The manifest that `pack` writes
     Pack,
     /// A line that a renderer reads, of `gate --exec` or of a pack
@@ -82,6 +86,9 @@ enum Of {
 
 impl Schema {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
+        if let Of::Run | Of::Gate = self.of {
+            anyhow::bail!("`run`, `gate` and `merge` write one report: expected `lightmeter schema report`");
+        }
         emit(&(serde_json::to_string_pretty(&self.of.schema())? + "\n"), self.out.as_deref())?;
         Ok(Status::Success)
     }
@@ -91,9 +98,8 @@ impl Of {
     fn schema(self) -> schemars::Schema {
         match self {
             Self::Scene => schemars::schema_for!(Scene),
-            Self::Run => Report::schema(),
+            Self::Report | Self::Run | Self::Gate => Report::schema(),
             Self::Special => SpecialReport::schema(),
-            Self::Gate => GateReport::schema(),
             Self::Pack => Manifest::schema(),
             Self::Protocol => protocol::schema(),
             Self::Frame => FrameDocument::schema(),
@@ -121,5 +127,5 @@ pub(super) fn all() -> anyhow::Result<Vec<(String, Value)>> {
         let name = of.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
         Ok((name, serde_json::to_value(of.schema())?))
     };
-    Of::value_variants().iter().map(named).collect()
+    Of::value_variants().iter().filter(|of| !matches!(of, Of::Run | Of::Gate)).map(named).collect()
 }

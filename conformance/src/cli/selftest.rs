@@ -11,7 +11,7 @@ use lightmeter::arithmetic::Profile;
 use lightmeter::blend_unit::selftest::selftest;
 use lightmeter::document::Document as _;
 use lightmeter::document::event::Stop;
-use lightmeter::document::run::Interrupted;
+use lightmeter::document::report::Interrupted;
 use lightmeter::document::selftest::{
     Mistake, NamedFrom, Record, Resolution, SCHEMA, SceneRecord, SceneResolution, SelftestDocument, UnitFinding,
     UnitRow,

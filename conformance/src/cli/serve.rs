@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 
 /// Options that a playground has no use for: it judges what is typed.
-const PLAYGROUND_LACKS: [&str; 28] = [
+const PLAYGROUND_LACKS: [&str; 29] = [
     "filter",
     "blend",
     "target",
@@ -33,6 +33,7 @@ const PLAYGROUND_LACKS: [&str; 28] = [
     "images",
     "runs",
     "fail_fast",
+    "no_samples",
     "expect",
     "baseline",
     "growth",

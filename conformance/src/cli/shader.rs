@@ -10,7 +10,7 @@ use lightmeter::bench::OwnShader as Beside;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
 use lightmeter::document::hash;
-use lightmeter::document::run::{BoundVariable, FoundBy, JudgedAs, MistakePlace, Report, ShaderUse};
+use lightmeter::document::report::{BoundVariable, FoundBy, HeldInput, JudgedAs, MistakePlace, Report, ShaderUse};
 use lightmeter::faults::{Fault, Touched};
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
@@ -436,6 +436,7 @@ impl OwnShader {
             variables: binding.bound.iter().map(variable).collect(),
             not_given: binding.outputs.iter().filter_map(is_given).collect(),
             unbound: self.unbound(binding).map(str::to_owned).collect(),
+            held: self.constant.iter().map(held).collect(),
             mistakes: vec![],
         }
     }
@@ -488,9 +489,9 @@ impl OwnShader {
         let catalogue = catalogue();
         let formula = |adapted: &Adapted| {
             let id = &adapted.id;
-            let named = report.groups.iter().filter(|group| group.id == *id).find(|group| !group.mistakes.is_empty());
+            let named = report.groups.iter().filter(|group| group.id == *id).find(|group| !group.mistakes().is_empty());
             let member = catalogue.iter().find(|member| member.spec.id == *id);
-            let faults = named.into_iter().flat_map(|group| &group.mistakes).filter_map(|name| Fault::by_name(name));
+            let faults = named.into_iter().flat_map(|group| group.mistakes()).filter_map(|name| Fault::by_name(name));
             let mistakes = member.into_iter().zip(std::iter::repeat(faults)).flat_map(|(member, faults)| {
                 faults.filter_map(|fault| line_of(&adapted.text, fault, member, &adapted.variables))
             });
@@ -499,6 +500,7 @@ impl OwnShader {
                 variables: adapted.variables.clone(),
                 not_given: adapted.missing.clone(),
                 unbound: adapted.unbound.clone(),
+                held: adapted.constants.iter().map(held).collect(),
                 mistakes: mistakes.collect(),
             }
         };
@@ -537,5 +539,16 @@ impl OwnShader {
             Ok(AskedBinding { name: name.trim().into(), expression: expression.trim().into() })
         };
         self.bind.iter().map(asked).collect()
+    }
+}
+
+/// An input that a shader does not take, as a report has it.
+fn held((name, constant): &(String, Constant)) -> HeldInput {
+    let name = name.clone();
+    match constant {
+        Constant::Numbers(numbers) => {
+            HeldInput { name, bits: numbers.iter().map(|number| number.to_bits()).collect(), same_as: None }
+        }
+        Constant::SameAs(other) => HeldInput { name, bits: vec![], same_as: Some(other.clone()) },
     }
 }

@@ -4,7 +4,7 @@ use super::Status;
 use super::observed::happens;
 use super::say;
 use lightmeter::document::event::Stop;
-use lightmeter::document::run::Interrupted;
+use lightmeter::document::report::Interrupted;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

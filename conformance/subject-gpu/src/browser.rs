@@ -2,7 +2,7 @@
 
 use crate::on_gpu;
 use lightmeter_browser::{BrowserHello, ServedBrowser, Session};
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_engine::subject::Subject;
 use lightmeter_gpu::{Gpu, Host};
 use lightmeter_judge::devices::Known;

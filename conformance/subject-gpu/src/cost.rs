@@ -1,6 +1,6 @@
 //! What effects cost that a scene does not call for: composed shaders against the one with all effects.
 
-use lightmeter_document::run::EffectsCost;
+use lightmeter_document::report::EffectsCost;
 use lightmeter_gpu::compose::{Recipe, ShaderForm};
 use lightmeter_gpu::scene::SceneRenderer;
 use lightmeter_gpu::{Clock, Gpu, GpuError, Shaders};

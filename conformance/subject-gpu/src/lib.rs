@@ -20,7 +20,7 @@ use kernel::ShaderCode;
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::Member;
 use lightmeter_catalogue::special::Probe;
-use lightmeter_document::run::{Cost, EffectsCost, Identity};
+use lightmeter_document::report::{Cost, EffectsCost, Identity};
 use lightmeter_engine::device::{Blocks, Code, Device, DeviceError, Own, Picture, Probed, ReadAhead, Stages};
 use lightmeter_engine::piece::{Piece, Pixels};
 use lightmeter_engine::rows::Rows;
@@ -381,7 +381,7 @@ mod tests {
     use super::*;
     use lightmeter_catalogue::filter::Filter;
     use lightmeter_document::event::{Event, Observer};
-    use lightmeter_document::run::Report;
+    use lightmeter_document::report::Report;
     use lightmeter_engine::options::Options;
     use lightmeter_engine::run::run;
     use lightmeter_gpu::native_adapters;

@@ -2,7 +2,7 @@
 
 use super::kernel::kernel;
 use lightmeter_catalogue::select::{CaseRef, Member};
-use lightmeter_document::run::Cost;
+use lightmeter_document::report::Cost;
 use lightmeter_gpu::{Clock, Gpu, GpuError, RepeatPipeline, Rung, Shaders};
 use std::collections::BTreeMap;
 

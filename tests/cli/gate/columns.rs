@@ -202,7 +202,7 @@ fn a_process_is_asked_in_columns() {
         }
         if matches!(way, "few" | "unended") {
             // One wait tells it: the next formula is asked by lines at once.
-            assert_eq!(report["incidents"].as_array().map(Vec::len), Some(1), "{report}");
+            assert_eq!(report["renderer"]["incidents"].as_array().map(Vec::len), Some(1), "{report}");
         }
     }
 }
@@ -214,7 +214,12 @@ fn a_formula_that_hangs_in_columns_is_waited_for_three_times() {
     let arguments = ["gate", "fog/exp", "--exec", &renderer, "--cases", "40000", "--format", "json"];
     let (status, report) = report(&lightmeter(&arguments));
     assert_eq!(status, 4, "{report}");
-    assert_eq!(report["incidents"].as_array().map(Vec::len), Some(3), "{}", report["incidents"]);
+    assert_eq!(
+        report["renderer"]["incidents"].as_array().map(Vec::len),
+        Some(3),
+        "{}",
+        report["renderer"]["incidents"]
+    );
 }
 
 #[test]
@@ -234,7 +239,7 @@ fn what_is_no_answer_in_columns_is_told_at_once_and_its_cases_are_asked_by_lines
     ] {
         // No time passes: a gate that waited for what does not come would never end.
         let (status, report) = report(&process(&formulas, &format!("columns={way}"), &[]));
-        let problems = &report["problems"];
+        let problems = &report["renderer"]["problems"];
         assert!(status == 4 && problems["counts"][kind].as_u64() >= Some(1), "{way}: {report}");
         assert!(problems.to_string().contains(said), "{way}: {problems}");
         assert_eq!((count(&report, "failed"), count(&report, "missing")), (0, 0), "{way}: {report}");
@@ -242,7 +247,10 @@ fn what_is_no_answer_in_columns_is_told_at_once_and_its_cases_are_asked_by_lines
     }
     // Behind the last array nothing waits for a line, and what stands there is told all the same.
     let (status, report) = report(&process(&["fog/exp/random"], "columns=surplus", &[]));
-    assert!(status == 4 && report["problems"].to_string().contains("5 bytes behind the last answer"), "{report}");
+    assert!(
+        status == 4 && report["renderer"]["problems"].to_string().contains("5 bytes behind the last answer"),
+        "{report}"
+    );
     assert_eq!(count(&report, "passed"), count(&report, "asked"), "{report}");
 }
 
@@ -259,7 +267,7 @@ fn rows_of_columns_are_skipped_by_a_line() {
         report(&lightmeter(&["gate", text(&pack), text(&answers), "--format", "json"]))
     };
     let (status, report) = judged(&[json!({ "id": "fog/exp", "skip": "no fog", "rows": [0, 3] })]);
-    assert_eq!((status, count(&report, "skipped"), &report["totals"]["undeclared"]), (0, 2, &Value::Null), "{report}");
+    assert_eq!((status, count(&report, "skipped"), &report["by_case"]["undeclared"]), (0, 2, &Value::Null), "{report}");
     let (status, report) = judged(&[json!({ "id": "vector/reflect", "skip": "none", "rows": [1] })]);
     assert_eq!((status, count(&report, "skipped"), count(&report, "undeclared")), (1, 1, 1), "{report}");
     for (line, kind, said) in [
@@ -273,12 +281,15 @@ fn rows_of_columns_are_skipped_by_a_line() {
         (json!({ "id": "fog/exp", "value": [1] }), "unknown", "is a formula; expected the id of a case"),
     ] {
         let (status, report) = judged(&[line]);
-        let problems = &report["problems"];
+        let problems = &report["renderer"]["problems"];
         assert!(status == 4 && problems["counts"][kind] == 1 && problems.to_string().contains(said), "{problems}");
     }
     // One row by two lines: both lines are of answers, and the first holds.
     let skip = json!({ "id": "fog/exp", "skip": "no fog", "rows": [4, 5] });
     let (status, report) = judged(&[skip.clone(), skip]);
     assert_eq!((status, count(&report, "skipped")), (4, 2), "{report}");
-    assert!(report["problems"].to_string().contains("line 3: row 4 of fog/exp is skipped more than once"), "{report}");
+    assert!(
+        report["renderer"]["problems"].to_string().contains("line 3: row 4 of fog/exp is skipped more than once"),
+        "{report}"
+    );
 }

@@ -108,8 +108,8 @@ fn a_gate_that_is_told_to_stop_reports_and_leaves_nothing() {
     gate.signal(Signal::TERM);
     gate.send(Signal::TERM);
     let (status, found) = report(&gate.go_on());
-    assert!(status == 143 && found["signal"] == 15, "{found}");
-    assert!(found["incidents"].to_string().contains("it was stopped"), "{found}");
+    assert!(status == 143 && found["interrupted"]["signal"] == 15, "{found}");
+    assert!(found["renderer"]["incidents"].to_string().contains("it was stopped"), "{found}");
     assert!(count(&found, "passed") > 0, "what was answered is judged: {found}");
     ends(&file);
     assert_eq!(std::fs::read_dir(&temporary).expect("it is there").count(), 0, "its folder for images is left");
@@ -120,7 +120,7 @@ fn a_renderer_that_writes_on_after_its_last_answer_is_ended() {
     for pause in [PASSES, ":"] {
         let exec = format!("{}; {PASSES}; while :; do echo; {pause}; done", renderer());
         let (status, found) = report(&gate(&["fog/exp"], &exec, &[]));
-        assert!(status == 4 && found["incidents"].to_string().contains("did not end"), "{pause}: {found}");
+        assert!(status == 4 && found["renderer"]["incidents"].to_string().contains("did not end"), "{pause}: {found}");
     }
 }
 
@@ -128,7 +128,7 @@ fn a_renderer_that_writes_on_after_its_last_answer_is_ended() {
 fn how_a_renderer_ends_is_told_though_it_answered_all() {
     for (fault, said) in [("exit=3", "exit status: 3"), ("lingers=all", "did not end")] {
         let (status, found) = report(&process(&["fog/exp"], fault, &[]));
-        assert!(status == 4 && found["incidents"].to_string().contains(said), "{fault}: {found}");
+        assert!(status == 4 && found["renderer"]["incidents"].to_string().contains(said), "{fault}: {found}");
         assert_eq!(count(&found, "passed"), count(&found, "asked"), "{found}");
     }
 }

@@ -11,7 +11,7 @@ fn what_the_first_line_does_not_declare_is_unknown() {
     let hello = "{\"renderer\": \"half\", \"formulas\": [\"fog/exp\"]}\n";
     let half = edit(&answers, |k, line| if k == 0 { hello } else { "" }.to_owned() + line + "\n");
     let (status, report) = judged(&pack, &half, &[]);
-    assert!(status == 4 && report["problems"]["counts"]["unknown"].as_u64() > Some(60), "{report}");
+    assert!(status == 4 && report["renderer"]["problems"]["counts"]["unknown"].as_u64() > Some(60), "{report}");
     assert_eq!(count(&report, "passed"), count(&report, "asked"), "{report}");
     // A hello that is not the first line is told.
     let late = edit(&answers, |k, line| if k == 5 { hello } else { "" }.to_owned() + line + "\n");
@@ -30,7 +30,8 @@ fn a_hello_says_what_it_computes_on_and_what_it_leaves_out() {
     let renderer = &report["renderer"];
     assert!(renderer["device"] == "GPU" && renderer["driver"] == "D 3", "{renderer}");
     let groups = report["groups"].as_array().expect("an array");
-    let ids: Vec<_> = groups.iter().filter(|group| group["asked"].as_u64() > Some(0)).map(|one| &one["id"]).collect();
+    let ids: Vec<_> =
+        groups.iter().filter(|group| group["by_case"]["asked"].as_u64() > Some(0)).map(|one| &one["id"]).collect();
     assert_eq!(ids, ["fog/exp"]);
     assert!(report.to_string().contains("it excludes it"), "{report}");
     let output = lightmeter(&["gate", text(&pack), text(&file)]);
@@ -47,7 +48,7 @@ fn a_hello_says_what_it_computes_on_and_what_it_leaves_out() {
         let file = saying(&format!("{{\"renderer\": \"r\", \"formulas\": [\"fog\"], \"excludes\": [\"{entry}\"]}}\n"));
         let (_, report) = judged(&pack, &file, &[]);
         let groups = report["groups"].as_array().expect("an array");
-        let has_cases = |group: &&serde_json::Value| group["asked"].as_u64() > Some(0);
+        let has_cases = |group: &&serde_json::Value| group["by_case"]["asked"].as_u64() > Some(0);
         let mut ids: Vec<_> = groups.iter().filter(has_cases).filter_map(|one| one["id"].as_str()).collect();
         ids.sort_unstable();
         assert_eq!(ids, asked, "{entry}");
@@ -147,7 +148,7 @@ fn answers_that_do_not_say_which_pack_they_answer_are_warned_of() {
         let (status, report) = judged(&pack, file, &[]);
         let output = lightmeter(&["gate", text(&pack), text(file)]);
         assert_eq!((status, code(&output)), (0, 0), "{report}");
-        let warnings = report["warnings"].as_array().cloned().unwrap_or_default();
+        let warnings = report["renderer"]["warnings"].as_array().cloned().unwrap_or_default();
         for (format, says) in [("text", "warning: "), ("junit", "which pack"), ("html", "which pack")] {
             let output = stdout(&lightmeter(&["gate", text(&pack), text(file), "--format", format]));
             assert_eq!(output.contains(says), !warnings.is_empty(), "{format}: {output}");
@@ -180,7 +181,11 @@ fn a_line_may_skip_a_whole_formula() {
     let (status, report) = judged(&pack, &saying(", \"skips\": [{\"id\": \"fog/exp\", \"reason\": \"r\"}]"), &[]);
     let groups = report["groups"].as_array().expect("an array");
     let group = groups.iter().find(|group| group["id"] == "fog/exp").expect("it was asked");
-    assert_eq!((status, &group["skipped"], &group["reason"]), (0, &group["asked"], &"no fog".into()), "{report}");
+    assert_eq!(
+        (status, &group["by_case"]["skipped"], &group["by_case"]["reason"]),
+        (0, &group["by_case"]["asked"], &"no fog".into()),
+        "{report}"
+    );
     let (status, report) = judged(&pack, &saying(""), &[]);
     assert!(status == 1 && count(&report, "undeclared") == count(&report, "skipped"), "{report}");
 }

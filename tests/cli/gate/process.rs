@@ -99,7 +99,7 @@ fn a_process_that_fails_in_any_way_costs_that_case_alone() {
     // The last answer of a batch, so that nothing else is in its line.
     let last = "unended-at=fog/exp/random/000015";
     let (status, found) = report(&process(&["fog/exp/random/0000{0,1}*"], last, &[]));
-    let incidents = found["incidents"].to_string();
+    let incidents = found["renderer"]["incidents"].to_string();
     assert!(
         status == 4 && incidents.contains("took longer than a case may: ") && count(&found, "failed") == 1,
         "{found}"
@@ -118,17 +118,21 @@ fn a_formula_that_a_renderer_keeps_ending_at_is_given_up() {
     let (status, found) = report(&process(&["fog/exp", "vector"], "crash-at=fog/exp", &[]));
     assert_eq!(status, 4, "{found}");
     let groups = found["groups"].as_array().expect("an array");
-    for group in groups.iter().filter(|group| group["asked"] != 0) {
+    for group in groups.iter().filter(|group| group["by_case"]["asked"] != 0) {
         let is_it = group["id"] == "fog/exp";
-        let (failed, missing) = if is_it { (3, group["asked"].as_u64().unwrap_or(0) - 3) } else { (0, 0) };
-        assert_eq!((&group["failed"], &group["broken"]), (&failed.into(), &failed.into()), "{group}");
-        assert_eq!(group["missing"], missing, "{group}");
+        let (failed, missing) = if is_it { (3, group["by_case"]["asked"].as_u64().unwrap_or(0) - 3) } else { (0, 0) };
+        assert_eq!(
+            (&group["by_case"]["failed"], &group["by_case"]["broken"]),
+            (&failed.into(), &failed.into()),
+            "{group}"
+        );
+        assert_eq!(group["by_case"]["missing"], missing, "{group}");
     }
     assert!(groups.len() > 10, "{found}");
-    let incidents = found["incidents"].as_array().expect("an array");
+    let incidents = found["renderer"]["incidents"].as_array().expect("an array");
     assert_eq!(incidents.len(), 4, "three cases, and that no more is asked: {incidents:?}");
     assert!(incidents[3].to_string().contains("fog/exp: no more of it is asked"), "{incidents:?}");
-    assert!(found["starts"].as_u64().is_some_and(|starts| starts <= 8), "{found}");
+    assert!(found["renderer"]["starts"].as_u64().is_some_and(|starts| starts <= 8), "{found}");
 }
 
 #[test]
@@ -144,8 +148,12 @@ fn a_failure_names_inputs_outputs_and_units() {
     let output = process(&["fog/linear"], "nan-at=fog/linear/random/000017", &[]);
     let (_, found) = report(&output);
     let failure = &found["failures"][0];
-    assert!(failure["named"]["dmin"].is_number() && failure["named"]["p"].is_array(), "{failure}");
-    assert_eq!((&failure["outputs"][0], &failure["units"]["dmax"]), (&"f".into(), &"unit".into()), "{failure}");
+    assert!(failure["inputs"]["dmin"].is_number() && failure["inputs"]["p"].is_array(), "{failure}");
+    assert_eq!(
+        (&failure["answer"]["outputs"][0], &failure["units"]["dmax"]),
+        (&"f".into(), &"unit".into()),
+        "{failure}"
+    );
     let exec = format!("{} nan-at=fog/linear/random/000017", renderer());
     let told = crate::stdout(&lightmeter(&["gate", "--exec", &exec, "--cases", "64", "fog/linear"]));
     assert!(told.contains("dmin ") && told.contains("✗  f  ") && told.contains("legal from"), "{told}");
@@ -186,7 +194,7 @@ fn what_is_written_without_end_or_use_ends_the_process_and_not_the_gate() {
     for (fault, said) in [("flood-at", "many lines that answer nothing"), ("trickle-at", "longer than a case may")] {
         let output = process(&["fog/exp"], &format!("{fault}={case}"), &[]);
         let (status, found) = report(&output);
-        assert!(status == 4 && found["incidents"].to_string().contains(said), "{fault}: {found}");
+        assert!(status == 4 && found["renderer"]["incidents"].to_string().contains(said), "{fault}: {found}");
         assert_eq!(count(&found, "passed"), count(&found, "asked") - 1, "{fault}: {found}");
     }
     let (status, found) = report(&process(&["fog/exp"], &format!("hello-at={case}"), &[]));
@@ -203,7 +211,10 @@ fn a_renderer_that_answers_without_reading_is_told() {
     let exec = format!("cat '{}'; {PASSES}; sleep 600", text(&file));
     let args = ["gate", "--exec", &exec, "--format", "json", "--cases", "4000", "fog/exp/random"];
     let (status, found) = report(&lightmeter(&args));
-    assert!(status == 4 && found["incidents"].to_string().contains("did not read what it was asked"), "{found}");
+    assert!(
+        status == 4 && found["renderer"]["incidents"].to_string().contains("did not read what it was asked"),
+        "{found}"
+    );
 }
 
 #[test]
@@ -280,7 +291,7 @@ fn a_crash_that_is_expected_breaks_nothing() {
     write("crash = true\n");
     let (status, found) = gate();
     assert_eq!((status, count(&found, "failed")), (0, 1), "{found}");
-    assert_eq!(found["expected_incidents"].as_array().map(Vec::len), Some(1), "told once: {found}");
+    assert_eq!(found["renderer"]["expected_incidents"].as_array().map(Vec::len), Some(1), "told once: {found}");
     // Another crash is not excused.
     let both = format!("crash-at={case}");
     let elsewhere =
@@ -309,8 +320,12 @@ fn a_process_that_ends_after_an_answer_spoils_no_other_case() {
     let exec = in_shell(&folder, "", &answered);
     let (status, found) = report(&gate(&["fog/exp"], &exec, &["--seed", "3"]));
     assert_eq!(status, 4, "{found}");
-    let problems: Vec<&str> =
-        found["failures"].as_array().into_iter().flatten().filter_map(|failure| failure["problem"].as_str()).collect();
+    let problems: Vec<&str> = found["failures"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|failure| failure["answer"]["problem"].as_str())
+        .collect();
     assert!(problems.is_empty() && count(&found, "missing") == 0, "every answer is judged: {problems:?}");
 }
 
@@ -336,7 +351,7 @@ fn another_crash_is_not_excused_by_one_that_is_expected() {
         renderer()
     );
     let (status, found) = report(&gate(&["fog/exp", "scene/flat"], &exec, &["--expect", text(&file)]));
-    assert!(status == 4 && found["incidents"].as_array().map(Vec::len) == Some(1), "{found}");
+    assert!(status == 4 && found["renderer"]["incidents"].as_array().map(Vec::len) == Some(1), "{found}");
 }
 
 #[test]
@@ -349,8 +364,8 @@ fn a_process_that_says_another_hello_is_given_up() {
     let named = std::fs::read_to_string(&script).expect("it is there").replace("\"shell\"", "\"'$name'\"");
     std::fs::write(&script, named).expect("it can be written");
     let (status, found) = report(&gate(&["fog/exp"], &exec, &["--runs", "2"]));
-    assert!(status == 4 && found["incidents"].to_string().contains("says another hello"), "{found}");
-    let incidents = found["incidents"].to_string();
+    assert!(status == 4 && found["renderer"]["incidents"].to_string().contains("says another hello"), "{found}");
+    let incidents = found["renderer"]["incidents"].to_string();
     assert!(incidents.contains("started first: `renderer` was \\\"first\\\", and is \\\"second\\\""), "{incidents}");
     for (hello, status, said) in [
         ("{\"hello\":\"lightmeter.protocol/2\",\"renderer\":\"r\"}", 4, "expected `lightmeter.protocol/1`"),
@@ -376,7 +391,7 @@ fn a_process_that_says_another_hello_is_given_up() {
 fn all_is_asked_as_often_as_is_said() {
     let fault = "unstable-at=fog/exp/random/000003";
     let (status, found) = report(&process(&["fog/exp"], "", &["--runs", "3"]));
-    assert_eq!((status, found["starts"].as_u64()), (0, Some(3)), "{found}");
+    assert_eq!((status, found["renderer"]["starts"].as_u64()), (0, Some(3)), "{found}");
     // An answer that is another each time, legal or not, is found by runs; a process of the same history gives the same.
     let flag = folder("runs").join("flag");
     let exec = format!(
@@ -385,7 +400,7 @@ fn all_is_asked_as_often_as_is_said() {
         renderer()
     );
     let (status, found) = report(&gate(&["fog/exp"], &exec, &["--runs", "2"]));
-    assert!(status == 1 && found["unstable"] == serde_json::json!(["fog/exp/random/000009"]), "{found}");
+    assert!(status == 1 && found["unstable_cases"] == serde_json::json!(["fog/exp/random/000009"]), "{found}");
     let (status, found) = report(&process(&["fog/exp"], fault, &[]));
     assert_eq!((status, count(&found, "unstable")), (1, 1), "{found}");
 }
@@ -412,7 +427,7 @@ fn blending_is_asked_on_every_target_that_is_declared() {
         .expect("an array")
         .iter()
         .find(|group| group["id"] == "blend/min" && group["target"] == "rgba8unorm");
-    assert_eq!(min.and_then(|group| group["asked"].as_u64()), Some(16 * 64), "{min:?}");
+    assert_eq!(min.and_then(|group| group["by_case"]["asked"].as_u64()), Some(16 * 64), "{min:?}");
     let (status, found) = of("targets=all blends-by=truncate", &[]);
     assert!(status == 1 && named(&found, "rgba8unorm", "stored truncated") >= 2, "{}", found["totals"]);
     let (status, found) = of("targets=all blends-by=times-256", &["--target", "rgba8unorm"]);
@@ -457,7 +472,7 @@ fn a_pixel_that_changes_is_unstable() {
     for (exec, more) in [(command_of(&format!("targets=all unstable-at={id}")), &[][..]), (later, &["--runs", "2"])] {
         let (status, found) = report(&gate(&state, &exec, &[&["--target", "rgba8unorm"], more].concat()));
         assert_eq!((status, count(&found, "unstable")), (1, 1), "{more:?}: {}", found["totals"]);
-        assert_eq!(found["unstable"][0], "blend/add/src-alpha/one/0003 on rgba8unorm", "{found}");
+        assert_eq!(found["unstable_cases"][0], "blend/add/src-alpha/one/0003 on rgba8unorm", "{found}");
     }
     let (status, found) = report(&process(&state, "targets=all", &["--runs", "2"]));
     assert_eq!((status, count(&found, "unstable")), (0, 0), "{}", found["totals"]);

@@ -2,7 +2,7 @@
 
 use lightmeter::adapters;
 use lightmeter::document::event::Silent;
-use lightmeter::document::run::Report;
+use lightmeter::document::report::Report;
 use lightmeter::options::Options;
 use lightmeter::run::run_selection;
 use lightmeter::selection::Selection;

@@ -15,10 +15,10 @@ use crate::skip::{DRIVER, skip};
 use device::Device;
 use libtest_mimic::{Arguments, Completion, Failed, FormatSetting, Trial};
 use lightmeter::device::Code;
-use lightmeter::document::run::{Report, Totals};
+use lightmeter::document::report::{Report, Totals};
 use lightmeter::document::thousands;
 use lightmeter::options::{DEFAULT_CASES, Options};
-use lightmeter::report::{Level, text};
+use lightmeter::report::text;
 use lightmeter::selection::{Selection, SelectionPart};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -191,7 +191,7 @@ fn verdict(part: &SelectionPart, report: &Report, options: &Options) -> Result<C
 fn message(part: &SelectionPart, report: &Report, options: &Options) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
-    let _ = text::failures(report, Level::Normal, &mut text);
+    let _ = text::failing(report, text::Style::default(), &mut text);
     for deviation in report.deviations.iter().filter(|deviation| !deviation.still_needed) {
         let _ = text.write_str("\n✗ unexpected pass: ").and_then(|()| text::deviation(deviation, &mut text));
     }
@@ -209,7 +209,7 @@ fn message(part: &SelectionPart, report: &Report, options: &Options) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter::document::run::DeviationUse;
+    use lightmeter::document::report::DeviationUse;
     use lightmeter::subject::Subject;
 
     fn part(path: &str) -> (SelectionPart, Options) {

@@ -11,7 +11,7 @@ use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::{Code, DeviceError, Picture};
 use lightmeter::devices::DEVIATIONS;
 use lightmeter::document::event::{Event, Observer, Stop};
-use lightmeter::document::run::Group;
+use lightmeter::document::report::Group;
 use lightmeter::evaluate::Evaluator;
 use lightmeter::filter::Filter;
 use lightmeter::image::LegalPixel;

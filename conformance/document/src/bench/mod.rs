@@ -8,7 +8,7 @@ pub mod pareto;
 pub mod recommendation;
 
 use crate::Number;
-use crate::run::Interrupted;
+use crate::report::Interrupted;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

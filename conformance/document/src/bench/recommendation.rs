@@ -1,6 +1,6 @@
 //! What `bench --recommend` writes: the cheapest row of each group within an error limit, `lightmeter.recommendation/1`.
 
-use crate::run::Interrupted;
+use crate::report::Interrupted;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

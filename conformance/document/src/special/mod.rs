@@ -3,7 +3,7 @@
 pub mod record;
 
 use crate::Word;
-use crate::run::{Identity, Interrupted};
+use crate::report::{Identity, Interrupted};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -2,7 +2,7 @@
 
 use super::SpecialReport;
 use crate::Word;
-use crate::run::Identity;
+use crate::report::Identity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -10,7 +10,7 @@ pub use statistics::{ExactFloat, Statistics, StoreStatistics, SweepInput, SweepP
 
 use crate::Word;
 use crate::hash::hash;
-use crate::run::Identity;
+use crate::report::Identity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 
 use super::histogram::Histogram;
 use crate::Number;
-use crate::run::Tiers;
+use crate::report::Tiers;
 use crate::stores::StoreCounts;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

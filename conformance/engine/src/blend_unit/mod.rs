@@ -8,4 +8,4 @@ mod chunk;
 pub mod draw;
 pub mod run;
 pub mod selftest;
-mod standing;
+pub(crate) mod standing;

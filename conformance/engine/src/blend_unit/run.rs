@@ -11,7 +11,7 @@ use crate::subject::Subject;
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{Interrupted, Report};
+use lightmeter_document::report::{Interrupted, Report};
 use lightmeter_scene::target::TargetFormat;
 use std::time::Instant;
 

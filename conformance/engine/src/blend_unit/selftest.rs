@@ -9,7 +9,7 @@ use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
 use lightmeter_document::event::{Silent, Stop};
-use lightmeter_document::run::{Group, Report};
+use lightmeter_document::report::{Group, Problem, ProblemKind, Report, StoreUse};
 use lightmeter_document::selftest::{UnitFinding, UnitRow};
 use lightmeter_judge::blend_unit::rules::{FAULTS, Rules, Store, UnitFault};
 use lightmeter_scene::blend::{Separate, State};
@@ -31,7 +31,7 @@ pub fn selftest(
         progress(target.name());
         let judged = judge(&groups, target, Rules::RIGHT, cases, stop)?;
         rows.push(row("none", target, &judged, |groups| {
-            let found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
+            let found = |group: &Group| group.totals.failed > 0 || !group.problems.is_empty();
             if groups.iter().any(found) { UnitFinding::FalseAlarm } else { UnitFinding::Clean }
         }));
         for fault in FAULTS {
@@ -122,7 +122,9 @@ fn row(
 ) -> UnitRow {
     let mut said: Vec<String> = vec![];
     for group in &report.groups {
-        said.extend(group.problem.iter().chain(&group.explanation).map(|text| format!("{}: {text}", group.id)));
+        let problems = group.problems.iter().map(ToString::to_string);
+        let all = problems.chain(group.diagnosis.iter().map(ToString::to_string));
+        said.extend(all.map(|text| format!("{}: {text}", group.id)));
     }
     UnitRow {
         fault: fault.into(),
@@ -137,12 +139,15 @@ fn row(
 /// A wrong store must be named by the verdict on each group that has enough values to tell; any fault by each group that it
 /// fails values in.
 fn finding(fault: &UnitFault, groups: &[Group]) -> UnitFinding {
-    let is_found = |group: &Group| group.totals.failed > 0 || group.problem.is_some();
-    let says = |text: &Option<String>, what: &str| text.as_ref().is_some_and(|text| text.contains(what));
+    let is_found = |group: &Group| group.totals.failed > 0 || !group.problems.is_empty();
     let is_store = fault.rules.store != Store::Nearest;
+    let says = format!("as if {}", fault.says);
     let is_named = |group: &Group| {
-        let by_store = is_store && says(&group.problem, fault.rules.store.name());
-        by_store || says(&group.explanation, fault.says)
+        let is_stored = |store: &StoreUse| store.identified == fault.rules.store.name();
+        let is_of_store = |one: &Problem| matches!(one.kind, ProblemKind::Store | ProblemKind::StoreOfState);
+        let by_store =
+            is_store && group.problems.iter().any(is_of_store) && group.store.as_ref().is_some_and(is_stored);
+        by_store || group.diagnosis.iter().flat_map(|found| &found.explanations).any(|one| one.says == says)
     };
     let throughout = fault.rules.stores_wrong_throughout();
     // What wrong stores come to over several layers has no name.

@@ -8,25 +8,29 @@ use crate::device::DeviceError;
 use crate::options::Options;
 use crate::piece::{Piece, Pixels};
 use crate::subject::Subject;
-use lightmeter_catalogue::cases::Stage;
-use lightmeter_catalogue::select::{CaseRef, Member, Shard};
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::cases::{Kind, Stage};
+use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::FailedAnswer;
-use lightmeter_document::run::{
-    BlendState, Failure, Group, Report, SpecialUse, StoreUse, StoresOfShard, Tiers, Totals,
+use lightmeter_document::report::{
+    BlendState, Diagnosis, Failure, Group, GroupSample, Report, SampledRows, SampledStores, SpecialUse, StoresOfState,
+    Tiers, Totals,
 };
 use lightmeter_judge::blend_unit::expect::expect;
-use lightmeter_judge::blend_unit::model::BlendUnitModel;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_judge::blend_unit::policy;
 use lightmeter_judge::blend_unit::rules::Rules;
-use lightmeter_judge::blend_unit::store::{ENOUGH, StoreCounts, Stores as _, problem_of};
-use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, explain};
+use lightmeter_judge::blend_unit::store::{StoreCounts, problems, store_of};
+use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, diagnose};
 use lightmeter_judge::cases::{CaseTally, Unanswered};
-use lightmeter_judge::formula::{by_name, units, unjudged};
+use lightmeter_judge::formula::{bits_in_hex, by_name, units, unjudged};
+use lightmeter_judge::packed::{BadSample, packed, unpacked};
+use lightmeter_judge::sample::Sample;
 use lightmeter_judge::tally::Tally;
 use lightmeter_judge::{Outcome, worse};
-use lightmeter_scene::target::{Encoding, TargetFormat};
+use lightmeter_scene::blend::Route;
+use lightmeter_scene::target::TargetFormat;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -60,15 +64,11 @@ pub(super) struct UnitStanding {
     /// Pieces that were drawn.
     pieces: usize,
     tiers: Tiers,
-    /// What the values of each component say of how they are stored.
-    stores: [StoreCounts; 4],
-    /// Values that a declared model predicts, and how many are another.
-    model: (u64, u64),
-    departure: Option<String>,
-    samples: Vec<FailingPixel>,
+    /// What values say of how they are stored; its states are those of the rows.
+    stores: SampledStores,
+    /// Some of the failing pixels, by the place of formula and route, and the case.
+    samples: Sample<(usize, CaseRef)>,
     rows: Vec<BlendState>,
-    /// For each row, what its values say of how they are stored.
-    row_stores: Vec<[StoreCounts; 4]>,
     special: Vec<SpecialUse>,
     /// The same counted by cases, where that is asked for.
     cases: CaseTally,
@@ -83,11 +83,6 @@ pub(super) struct UnitStanding {
     seconds_warm: Option<f64>,
 }
 
-/// The model that a subject is known to follow bit for bit on a target.
-fn declared_model(subject: &Subject, target: TargetFormat) -> Option<BlendUnitModel> {
-    subject.known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8)
-}
-
 impl UnitStanding {
     pub(super) fn new(target: TargetFormat, lacks: Option<&'static str>) -> Self {
         Self {
@@ -96,12 +91,9 @@ impl UnitStanding {
             verdicts: Tally::default(),
             pieces: 0,
             tiers: Tiers::default(),
-            stores: <[StoreCounts; 4]>::default(),
-            model: (0, 0),
-            departure: None,
-            samples: vec![],
+            stores: SampledStores::default(),
+            samples: Sample::new(4, SAMPLES),
             rows: vec![],
-            row_stores: vec![],
             special: vec![],
             cases: CaseTally::default(),
             expected: 0,
@@ -139,11 +131,11 @@ impl UnitStanding {
             row.cases += tally.verdicts.totals.cases;
             row.failed += tally.verdicts.totals.failed;
             row.error_max = Number(worse(row.error_max.0, tally.verdicts.error_max));
-            self.row_stores[place].iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
+            self.stores.states[place].components.iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
             if target.is_unorm() {
                 row.tiers.get_or_insert_default().add(&tally.tiers);
             }
-            self.add(subject, chunk, k, tally, pixels, options);
+            self.add(subject, (chunk, k), members, tally, pixels, options);
             let unanswered = drawn.unanswered.range((number, 0)..(number + 1, 0));
             let unanswered = unanswered.map(|((_, place), why)| (*place, why)).collect();
             self.count_cases((chunk, k), members, stage(subject), tally, &unanswered, options);
@@ -263,7 +255,8 @@ impl UnitStanding {
             tiers: None,
             skip_reason: skip_reason.map(Into::into),
         });
-        self.row_stores.push(<[StoreCounts; 4]>::default());
+        let components = <[StoreCounts; 4]>::default();
+        self.stores.states.push(StoresOfState { id: id.clone(), route: route.into(), components });
         self.rows.len() - 1
     }
 
@@ -305,8 +298,8 @@ impl UnitStanding {
     fn add(
         &mut self,
         subject: &Subject,
-        chunk: &UnitChunk<'_>,
-        k: usize,
+        (chunk, k): (&UnitChunk<'_>, usize),
+        members: &[&Member],
         tally: &UnitTally,
         pixels: &[Units],
         options: &Options,
@@ -314,10 +307,10 @@ impl UnitStanding {
         let (member, piece, cases) = (chunk.members[k], &chunk.pieces[k], &chunk.cases[k]);
         let id = |place: usize| member.case_id(cases[place]);
         self.tiers.add(&tally.tiers);
-        self.stores.iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
-        self.model = (self.model.0 + tally.model.0, self.model.1 + tally.model.1);
-        if self.departure.is_none() {
-            self.departure = tally.departure.map(id);
+        self.stores.components.iter_mut().zip(&tally.stores).for_each(|(counts, of)| counts.add(of));
+        self.stores.model = [self.stores.model[0] + tally.model.0, self.stores.model[1] + tally.model.1];
+        if self.stores.departure.is_none() {
+            self.stores.departure = tally.departure.map(id);
         }
         if piece.program.is_special() {
             let on_record = |name: &str| policy::recorded(subject.known.special_record?.0, name, self.target);
@@ -333,13 +326,14 @@ impl UnitStanding {
                 }
             }));
         }
-        let drawn =
-            DrawnState { program: piece.program, route: piece.route, target: self.target, profile: options.profile };
         let told =
-            |place: usize| failure(member, &id(place), piece, place, pixels[place], drawn.target, subject, options);
-        let room = SAMPLES.saturating_sub(self.samples.len());
-        let sample = |&place: &usize| FailingPixel { drawn, case: piece.case(place), pixel: pixels[place] };
-        self.samples.extend(tally.verdicts.failures.keys().take(room).map(sample));
+            |place: usize| failure(member, &id(place), piece, place, pixels[place], self.target, subject, options);
+        let of = members.iter().position(|one| one.spec.id == member.spec.id).unwrap_or_default();
+        let way = way_of(of, piece.route);
+        for &(place, _) in &tally.failing {
+            #[expect(clippy::cast_possible_truncation, reason = "a value of a target fits binary32")]
+            self.samples.push((way, cases[place]), pixels[place].map(|value| value as f32));
+        }
         let number = self.pieces;
         self.pieces += 1;
         let mut verdicts = tally.verdicts.within(|&place| (number, place, id(place)), |&place| told(place));
@@ -363,27 +357,23 @@ impl UnitStanding {
             let refused = unjudged(id, why.message(), stage(subject), &subject.identity.name);
             report.failures.push(Failure { target: Some(self.target.name().into()), ..refused });
         }
-        let explained = explain(&self.samples);
-        let explanation = explained
-            .as_ref()
-            .map(|(says, count, of)| format!("{count} of {of} failing pixels are as if {says}"))
-            .or_else(|| (!self.samples.is_empty()).then(|| "no mistake in the catalogue explains what failed".into()));
         for (name, excused) in &self.verdicts.excused {
             report.excuse(name, &subject.identity.name, *excused);
         }
-        let problem = self.problem(subject).or_else(|| self.verdicts.problem());
+        let mut problems = problems(&self.special, &self.stores, &subject.known, self.target);
+        if problems.is_empty() {
+            problems.extend(self.verdicts.problem());
+        }
         let is_unorm = self.target.is_unorm() && totals.cases > 0;
         let stage = stage(subject);
         report.groups.push(Group {
             target: Some(self.target.name().into()),
             tiers: is_unorm.then_some(self.tiers),
-            store: self.store(subject).filter(|_| is_unorm),
-            stores: (is_unorm && options.shard != Shard::WHOLE)
-                .then_some(StoresOfShard { components: self.stores, states: self.rows.len() }),
+            store: store_of(&self.stores, &subject.known, self.target).filter(|_| is_unorm),
             totals: Totals {
                 cases: totals.cases + self.skipped,
                 skipped: self.skipped,
-                failed_groups: u64::from(problem.is_some()),
+                failed_groups: u64::from(!problems.is_empty()),
                 ..totals
             },
             error_ulp_max: Number(self.verdicts.error_max),
@@ -392,9 +382,9 @@ impl UnitStanding {
             seconds_warm: self.seconds_warm,
             worst: self.verdicts.worst.as_ref().map(|(_, (.., id))| id.clone()),
             skip_reason: self.lacks.map(Into::into),
-            explanation,
-            cause: explained.map(|(says, ..)| format!("as if {says}")),
-            problem,
+            diagnosis: diagnosed(&self.samples, members, self.target, options.profile, options.seed),
+            sample: options.keeps_samples().then(|| sampled(&self, members)),
+            problems,
             by_case: options.counts_cases.then(|| self.cases.told(members, group)),
             ..Group::new(group.into(), subject.identity.name.clone(), stage)
         });
@@ -402,52 +392,69 @@ impl UnitStanding {
         report.failures.extend(self.verdicts.reported());
         report.blend_states.extend(self.rows);
     }
+}
 
-    /// How values are stored: as the declared model has them, if all are, or as most values say.
-    fn store(&self, subject: &Subject) -> Option<StoreUse> {
-        let mut all = StoreCounts::default();
-        self.stores.iter().for_each(|counts| all.add(counts));
-        if let Some(model) = declared_model(subject, self.target)
-            && self.model.0 > 0
-            && self.model.1 == 0
-        {
-            return Some(StoreUse { identified: model.name().into(), share: 1.0, of: self.model.0, bias: all.bias() });
-        }
-        let (store, share) = all.likeliest();
-        (all.of >= ENOUGH).then(|| StoreUse { identified: store.name().into(), share, of: all.of, bias: all.bias() })
-    }
+/// The place of a formula with a route.
+fn way_of(member: usize, route: Route) -> usize {
+    let route = Route::ALL.iter().position(|one| *one == route).unwrap_or_default();
+    member * Route::ALL.len() + route
+}
 
-    /// What is wrong with how values are stored: of a component in all states, or of one in some.
-    fn store_problem(&self) -> Option<String> {
-        if let Some(problem) = problem_of(&self.stores, self.rows.len()) {
-            return Some(problem);
-        }
-        let mut states =
-            self.rows.iter().zip(&self.row_stores).filter_map(|(row, counts)| Some((&row.id, problem_of(counts, 1)?)));
-        let (id, problem) = states.next()?;
-        let others = states.count();
-        let others = if others > 0 { format!(", and so in {others} other states") } else { String::new() };
-        Some(format!("in {id} {problem}{others}"))
+/// What a shard keeps of a group that a blend unit drew.
+fn sampled(standing: &UnitStanding, members: &[&Member]) -> GroupSample {
+    GroupSample {
+        formulas: members.iter().map(|member| member.spec.id.clone()).collect(),
+        failing: vec![],
+        random: standing.verdicts.random.into(),
+        wrong: packed(&standing.samples),
+        right: SampledRows::default(),
+        stores: standing.target.is_unorm().then(|| standing.stores.clone()),
     }
+}
 
-    /// The group verdict: each value may be legal and the whole still wrong.
-    fn problem(&self, subject: &Subject) -> Option<String> {
-        if subject.known.special_record.is_some_and(|(_, this_version)| this_version)
-            && let Some(other) = self.special.iter().find(|special| !special.is_as_recorded())
-        {
-            let recorded = other.recorded.as_deref().unwrap_or_default();
-            return Some(format!("{} gives {}, where {recorded} is on record for this driver", other.id, other.seen));
+/// A sample of failing pixels that a shard kept, read for a whole of some members.
+pub(crate) fn unpacked_pixels(
+    sample: &GroupSample,
+    members: &[&Member],
+    known: Sample<(usize, CaseRef)>,
+) -> Result<Sample<(usize, CaseRef)>, BadSample> {
+    let place = |id: &String| members.iter().position(|member| member.spec.id == *id).unwrap_or(usize::MAX);
+    let places: Vec<usize> = (sample.formulas.iter().map(place))
+        .flat_map(|of| {
+            (0..Route::ALL.len()).map(move |route| of.saturating_mul(Route::ALL.len()).saturating_add(route))
+        })
+        .collect();
+    let each: Vec<&Member> = members.iter().flat_map(|member| std::iter::repeat_n(*member, Route::ALL.len())).collect();
+    unpacked(&sample.wrong, &places, &each, known)
+}
+
+/// An empty sample of failing pixels.
+pub(crate) const fn no_pixels() -> Sample<(usize, CaseRef)> {
+    Sample::new(4, SAMPLES)
+}
+
+/// What explains the failing pixels of a group, by a sample of them.
+pub(crate) fn diagnosed(
+    samples: &Sample<(usize, CaseRef)>,
+    members: &[&Member],
+    target: TargetFormat,
+    profile: &'static Profile,
+    seed: u64,
+) -> Option<Diagnosis> {
+    let pixel = |((way, case), values): ((usize, CaseRef), &[f32])| {
+        let (member, route) = (members[way / Route::ALL.len()], Route::ALL[way % Route::ALL.len()]);
+        let Kind::Blend(program) = member.spec.kind else { unreachable!("only blend states are drawn by the unit") };
+        let mut inputs = vec![];
+        member.inputs(case, seed, &mut inputs);
+        FailingPixel {
+            drawn: DrawnState { program, route, target, profile },
+            case: program.case(&inputs),
+            pixel: std::array::from_fn(|k| values[k].into()),
         }
-        let (of, others) = self.model;
-        if let Some(model) = declared_model(subject, self.target)
-            && others > 0
-        {
-            let first = self.departure.as_deref().unwrap_or_default();
-            let departs = format!("{others} of {of} values are not as {} has them, the first in {first}", model.name());
-            return Some(self.store_problem().map_or(departs.clone(), |stored| format!("{stored}; {departs}")));
-        }
-        if of > 0 { None } else { self.store_problem() }
-    }
+    };
+    let pixels: Vec<FailingPixel> = samples.rows().into_iter().map(pixel).collect();
+    let found = diagnose(&pixels)?;
+    Some(Diagnosis { failing: samples.seen, ..found })
 }
 
 #[expect(clippy::too_many_arguments, reason = "a failure tells everything about its verdict")]
@@ -469,12 +476,7 @@ fn failure(
     pixel::write(target, pixel, &mut bytes);
     let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
     Failure {
-        rerun: format!(
-            "lightmeter run '{id}' --adapter {} --target {}{}",
-            subject.identity.name,
-            target.name(),
-            options.rerun
-        ),
+        rerun: String::new(),
         id: id.into(),
         adapter: subject.identity.name.clone(),
         stage: stage(subject).into(),
@@ -483,7 +485,11 @@ fn failure(
         output: format!("color.{}", ["r", "g", "b", "a"][k]),
         inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         units: units(member),
-        inputs_hex: by_name(member, inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
+        inputs_hex: if subject.asked().is_some() {
+            serde_json::Map::new()
+        } else {
+            by_name(member, inputs, bits_in_hex)
+        },
         reference: Number(expected.reference[k]),
         interval: [Number(expected.low[k]), Number(expected.high[k])],
         promise: None,

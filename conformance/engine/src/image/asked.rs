@@ -11,11 +11,10 @@ use crate::turn::not_asked;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id};
 use lightmeter_document::Number;
-use lightmeter_document::by_case::{CaseCounts, FailedAnswer};
+use lightmeter_document::by_case::{CaseCounts, CaseTotals, FailedAnswer};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{Failure, Group, ImageUse, Report, Totals};
+use lightmeter_document::report::{Failure, Group, ImageUse, Report, Totals};
 use lightmeter_judge::cases::{Unanswered, ending};
-use lightmeter_judge::diagnose::Cause;
 use lightmeter_judge::formula::unjudged;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_judge::image::judge::Judged;
@@ -96,24 +95,25 @@ impl Scene<'_> {
 
     /// Adds a scene without an image to the report; whether it counts as a failure.
     fn refuse(&mut self, why: &Unanswered) -> bool {
-        let mut counts = CaseCounts { asked: 1, ..CaseCounts::default() };
+        let mut counts =
+            CaseCounts { totals: CaseTotals { asked: 1, ..CaseTotals::default() }, ..CaseCounts::default() };
         let mut totals = Totals { cases: 1, ..Totals::default() };
         let has_failed = matches!(why, Unanswered::Unjudged(_) | Unanswered::Broken(_));
         match why {
             Unanswered::Skipped(reason) | Unanswered::Undeclared(reason) => {
-                (counts.skipped, totals.skipped) = (1, 1);
-                counts.undeclared = u64::from(matches!(why, Unanswered::Undeclared(_)));
+                (counts.totals.skipped, totals.skipped) = (1, 1);
+                counts.totals.undeclared = u64::from(matches!(why, Unanswered::Undeclared(_)));
                 counts.reason = Some(reason.clone());
                 counts.not_passed = self.not_passed("skipped");
             }
             Unanswered::Missing | Unanswered::Unasked => {
-                counts.missing = 1;
+                counts.totals.missing = 1;
                 counts.not_passed = self.not_passed("missing");
             }
             Unanswered::Unjudged(message) | Unanswered::Broken(message) => {
-                (counts.failed, counts.unjudged) = (1, 1);
-                counts.broken = u64::from(matches!(why, Unanswered::Broken(_)));
-                counts.expected_failures = self.expected(true);
+                (counts.totals.failed, counts.totals.unjudged) = (1, 1);
+                counts.totals.broken = u64::from(matches!(why, Unanswered::Broken(_)));
+                counts.totals.expected_failures = self.expected(true);
                 counts.not_passed = self.not_passed("failed");
                 counts.smallest = Some(self.id.clone());
                 let failure = unjudged(self.id.clone(), message, STAGE, &self.subject.identity.name);
@@ -145,7 +145,6 @@ impl Scene<'_> {
             .diagnose
             .filter(|_| has_failed)
             .map(|diagnose| diagnose.image(&self.loaded.frame, image, scene.expected(&profile), &profile));
-        let (explanation, cause, mistakes) = Cause::parts(found);
         if has_failed {
             let failure = self.failure(&scene, image, &judged, &profile);
             counts.smallest = Some(failure.id.clone());
@@ -157,7 +156,7 @@ impl Scene<'_> {
             pixels = scene.told_pixels(image, &judged, &profile);
         }
         let mut totals = Totals { cases: 1, failed_groups: u64::from(problem.is_some()), ..verdicts.totals };
-        if counts.expected_failures > 0 {
+        if counts.totals.expected_failures > 0 {
             totals.expected_failures += std::mem::take(&mut totals.failed);
         }
         let margin = worst(&judged).or(judged.worst()).map_or(0.0, |worst| worst.margin);
@@ -166,10 +165,8 @@ impl Scene<'_> {
             error_ulp_max: Number(verdicts.error_max),
             margin_max: Number(margin),
             worst: Some(self.id.clone()),
-            explanation,
-            cause,
-            mistakes,
-            problem,
+            diagnosis: found,
+            problems: problem.into_iter().collect(),
             image: Some(ImageUse {
                 width: image.width,
                 height: image.pixels.len() / image.width,
@@ -177,7 +174,9 @@ impl Scene<'_> {
                 differs_from_composed: None,
                 cost: None,
                 bias,
+                wrong: judged.pixels().len() as u64,
                 departs_in: None,
+                show: None,
                 files,
                 hashes,
                 pixels,

@@ -4,32 +4,15 @@ use super::drawn::intermediate;
 use crate::device::{Code, DeviceError};
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
+use lightmeter_document::report::Departure;
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::expect::Expectation;
 use lightmeter_scene::effects::{Called, named};
 use lightmeter_scene::frame::Frame;
 use lightmeter_scene::stage::Intermediate;
-use std::fmt;
 
 /// Pixels that are looked at: the first of those that fail.
 const LOOKED_AT: usize = 4096;
-
-/// The first intermediate result that is not legal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Departure {
-    /// Its name, `cutout` where only the fragments that are left out differ, or `blend` or `store` where all of them are legal.
-    pub stage: &'static str,
-    /// Pixels that depart there.
-    pub pixels: usize,
-    /// Of how many that were looked at.
-    pub of: usize,
-}
-
-impl fmt::Display for Departure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "first departs in: {} ({} of {} pixels looked at)", self.stage, self.pixels, self.of)
-    }
-}
 
 /// Compares the intermediate results of failing pixels, in the order in which they come about; `None` where the subject cannot draw them.
 ///
@@ -60,12 +43,16 @@ pub fn departure(
         let sets = named(&whole);
         if let Ok(departing) = first_departing(subject, code, (&whole, &sets), profile, pixels)? {
             let (stage, pixels) = departing.map_or(("cutout", of), |(stage, pixels)| (stage.name(), pixels));
-            return Ok(Some(Departure { stage, pixels, of }));
+            return Ok(Some(departure_in(stage, pixels, of)));
         }
     }
     let last = if frame.draws.iter().any(|draw| draw.blend.is_some()) { "blend" } else { "store" };
     let (stage, pixels) = first.map_or((last, of), |(stage, pixels)| (stage.name(), pixels));
-    Ok(Some(Departure { stage, pixels, of }))
+    Ok(Some(departure_in(stage, pixels, of)))
+}
+
+fn departure_in(stage: &'static str, pixels: usize, of: usize) -> Departure {
+    Departure { stage: stage.into(), pixels: pixels as u64, of: of as u64 }
 }
 
 /// The subject cannot draw intermediate results.

@@ -9,7 +9,7 @@ use crate::subject::Subject;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::Report;
+use lightmeter_document::report::Report;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_reference::render::render;
 use lightmeter_scene::effects::{Called, effects, named};

@@ -1,18 +1,19 @@
 //! The verdict on an image of a scene: every pixel of it against what is legal, and where it is wrong, how.
 
-use super::diagnose::{self, Departure};
+use super::diagnose;
 use crate::device::{DeviceError, Picture};
 use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
-use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::run::{BiasUnit, Failure, Group, ImageBias, ImageUse, PixelUse, Report, Totals};
+use lightmeter_document::by_case::{CaseCounts, CaseTotals};
+use lightmeter_document::report::{
+    BiasUnit, Departure, Diagnosis, Failure, Group, ImageBias, ImageUse, PixelUse, Problem, ProblemKind, Report, Totals,
+};
 use lightmeter_document::{Number, hash};
 use lightmeter_judge::cases::ending;
 use lightmeter_judge::devices::Deviation;
-use lightmeter_judge::diagnose::Cause;
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::bias::Bias;
 use lightmeter_judge::image::expect::{Expectation, expect};
@@ -170,19 +171,16 @@ impl<'a> JudgedScene<'a> {
         }
         let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));
         let mut used = ImageUse { bias, ..self.image_use(drawn.image, expected) };
-        let explained = match worst(&judged) {
-            Some(worst) => Some(self.explain(drawn, named, (&judged, worst), &mut used, report)?),
+        let diagnosis = match worst(&judged) {
+            Some(worst) => self.explain(drawn, named, (&judged, worst), &mut used, report)?,
             None => None,
         };
-        let (explanation, cause, mistakes) = Cause::parts(explained);
         Ok(Group {
             error_ulp_max: Number(judged.verdicts.error_max),
             margin_max: Number(judged.worst().map_or(0.0, |worst| worst.margin)),
             worst: judged.worst().map(|worst| pixel_id(&self.id, drawn.image.width, worst.pixel)),
-            explanation,
-            cause,
-            mistakes,
-            problem,
+            diagnosis,
+            problems: problem.into_iter().collect(),
             image: Some(used),
             by_case,
             ..self.group(drawn.subject, drawn.picture, totals)
@@ -193,11 +191,9 @@ impl<'a> JudgedScene<'a> {
     pub(super) fn counts(&self, has_failed: bool, is_expected: bool) -> CaseCounts {
         let failed = u64::from(has_failed);
         let not_passed = BTreeMap::from([("failed".to_owned(), vec![ending("scene", &self.id)])]);
+        let expected_failures = u64::from(has_failed && is_expected);
         CaseCounts {
-            asked: 1,
-            passed: 1 - failed,
-            failed,
-            expected_failures: u64::from(has_failed && is_expected),
+            totals: CaseTotals { asked: 1, passed: 1 - failed, failed, expected_failures, ..CaseTotals::default() },
             not_passed: if has_failed { not_passed } else { BTreeMap::new() },
             ..CaseCounts::default()
         }
@@ -223,7 +219,9 @@ impl<'a> JudgedScene<'a> {
             differs_from_composed: None,
             cost: None,
             bias: None,
+            wrong: 0,
             departs_in: None,
+            show: None,
             files: vec![],
             hashes: vec![],
             pixels: vec![],
@@ -238,27 +236,22 @@ impl<'a> JudgedScene<'a> {
         (judged, worst): (&Judged, Miss),
         used: &mut ImageUse,
         report: &mut Report,
-    ) -> Result<Cause, DeviceError> {
-        let departure = self.departure(drawn, named, judged)?;
-        used.departs_in = departure.map(|departure| departure.stage.into());
-        let departure = departure.map_or_else(String::new, |departure| format!("; {departure}"));
+    ) -> Result<Option<Diagnosis>, DeviceError> {
+        used.wrong = judged.pixels().len() as u64;
+        used.departs_in = self.departure(drawn, named, judged)?;
+        used.show = Some(self.show(drawn, worst.pixel));
         (used.files, used.hashes) = self.write(drawn);
         used.pixels = self.told_pixels(drawn.image, judged, &drawn.profile);
         let kept = judged.misses.iter().filter(|miss| miss.component == 0 || **miss != worst).take(KEPT_FAILURES);
         for miss in std::iter::once(worst).chain(kept.copied()).take(KEPT_FAILURES) {
             report.failures.push(self.failure(drawn, miss));
         }
-        let pixels = judged.pixels().len();
-        let command = self.rerun("show", drawn, worst.pixel);
         let clock = Instant::now();
         let expected = self.expected(&drawn.profile);
         let granted = drawn.subject.known.granted(drawn.options.profile);
         let found = drawn.options.diagnose.map(|diagnose| diagnose.image(self.frame, drawn.image, expected, &granted));
-        let (mistake, cause, mistakes) = Cause::parts(found);
-        let mistake = mistake.map_or_else(String::new, |says| format!("; {says}"));
         report.timing.diagnose += clock.elapsed().as_secs_f64();
-        let says = format!("{pixels} pixels{departure}{mistake}; the worst: {command}{}", files_told(&used.files));
-        Ok(Cause { says, cause, mistakes })
+        Ok(found)
     }
 
     fn departure(
@@ -340,10 +333,11 @@ impl<'a> JudgedScene<'a> {
         (files, hashes)
     }
 
-    fn rerun(&self, command: &str, drawn: &Drawn<'_>, pixel: usize) -> String {
+    /// The command that shows a pixel.
+    fn show(&self, drawn: &Drawn<'_>, pixel: usize) -> String {
         let (id, options) = (pixel_id(&self.id, self.reference.width, pixel), drawn.options);
         let size = size(&options.filter, options.size).map(|size| format!(" --size {size}")).unwrap_or_default();
-        format!("lightmeter {command} '{id}' --adapter {}{size}{}", drawn.subject.identity.name, options.rerun)
+        format!("lightmeter show '{id}' --adapter {}{size}{}", drawn.subject.identity.name, options.rerun)
     }
 
     fn failure(&self, drawn: &Drawn<'_>, miss: Miss) -> Failure {
@@ -355,7 +349,7 @@ impl<'a> JudgedScene<'a> {
         #[expect(clippy::cast_possible_truncation, reason = "a value that was read from a target fits binary32")]
         let bits = (value as f32).to_bits();
         Failure {
-            rerun: self.rerun("run", drawn, pixel),
+            rerun: String::new(),
             id: pixel_id(&self.id, image.width, pixel),
             adapter: drawn.subject.identity.name.clone(),
             stage: stage(drawn.picture).into(),
@@ -385,15 +379,15 @@ fn short(x: f64) -> Number {
 }
 
 /// What a bias says that the accuracy rules do not explain.
-pub(super) fn told(bias: &ImageBias) -> Option<String> {
+pub(super) fn told(bias: &ImageBias) -> Option<Problem> {
     let ImageBias { steps, beyond, .. } = *bias;
     let is = bias.as_if();
-    beyond.map(|beyond| {
-        format!(
-            "each pixel is legal, but together they lie to one side: {is}, {steps:+.2} steps on average, of which the accuracy \
-             rules do not explain {beyond:+.2}"
-        )
-    })
+    let says = format!(
+        "each pixel is legal, but together they lie to one side: {is}, {steps:+.2} steps on average, of which the accuracy rules do not \
+         explain {:+.2}",
+        beyond?
+    );
+    Some(Problem::new(ProblemKind::Bias, says))
 }
 
 /// Which shader drew an image, as reports name it.
@@ -408,8 +402,4 @@ const fn stage(picture: Picture) -> &'static str {
 /// The miss of the greatest margin.
 pub(super) fn worst(judged: &Judged) -> Option<Miss> {
     judged.misses.iter().copied().reduce(|a, b| if is_worse(b.margin, a.margin) { b } else { a })
-}
-
-fn files_told(files: &[String]) -> String {
-    if files.is_empty() { String::new() } else { format!("; see {}", files.join(", ")) }
 }

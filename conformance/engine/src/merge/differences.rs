@@ -1,7 +1,7 @@
 //! What must be the same in all shards of one run, and which of it differs.
 
 use lightmeter_document::by_case::{ComparedBy, KnownFailure};
-use lightmeter_document::run::{Report, ShaderUse};
+use lightmeter_document::report::{Report, ShaderUse};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -13,7 +13,7 @@ use lightmeter_catalogue::special::Probe;
 use lightmeter_document::Number;
 use lightmeter_document::by_case::{CaseCounts, FailedAnswer};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{Failure, Group, Report, Totals};
+use lightmeter_document::report::{Failure, Group, Report, Totals};
 use lightmeter_document::special::{ProbeResult, ProbeVerdict};
 use lightmeter_judge::cases::Unanswered;
 use lightmeter_judge::formula::unjudged;
@@ -118,21 +118,21 @@ impl TableStanding<'_> {
     /// Counts a probe that failed; whether that is expected.
     fn failed(&mut self, probe: &Probe) -> bool {
         let is_expected = expect(self.report, self.options, &probe.id(), &[Stage::Answer.name()], true);
-        self.counts.failed += 1;
-        self.counts.expected_failures += u64::from(is_expected);
+        self.counts.totals.failed += 1;
+        self.counts.totals.expected_failures += u64::from(is_expected);
         self.not_passed("failed", probe);
         is_expected
     }
 
     /// Judges a result; whether it fails.
     fn judge(&mut self, probe: &'static Probe, bits: u32) -> bool {
-        self.counts.asked += 1;
+        self.counts.totals.asked += 1;
         self.totals.cases += 1;
         self.totals.verdicts += 1;
         let verdict = verdict(probe.promise, bits, None, false);
         if !verdict.is_failure() {
             expect(self.report, self.options, &probe.id(), &[Stage::Answer.name()], false);
-            self.counts.passed += 1;
+            self.counts.totals.passed += 1;
             let is_promised = verdict != ProbeVerdict::Indeterminate;
             let count = if is_promised { &mut self.totals.passed } else { &mut self.totals.indeterminate };
             *count += 1;
@@ -152,7 +152,7 @@ impl TableStanding<'_> {
             recorded_value: None,
         };
         let nothing_else = Results { outcomes: vec![], skipped: vec![], record: None };
-        let Some((simple, told)) = failure(&outcome, &nothing_else, self.subject, self.options) else {
+        let Some((simple, told)) = failure(&outcome, &nothing_else, self.subject) else {
             unreachable!("the probe is one of the tables'")
         };
         let promised = told.promise.as_deref().unwrap_or_default();
@@ -170,12 +170,12 @@ impl TableStanding<'_> {
 
     /// Counts a probe without a result; whether it is to be asked for once more.
     fn refuse(&mut self, probe: &Probe, why: &Unanswered) -> bool {
-        self.counts.asked += 1;
+        self.counts.totals.asked += 1;
         self.totals.cases += 1;
         match why {
             Unanswered::Skipped(reason) | Unanswered::Undeclared(reason) => {
-                self.counts.skipped += 1;
-                self.counts.undeclared += u64::from(matches!(why, Unanswered::Undeclared(_)));
+                self.counts.totals.skipped += 1;
+                self.counts.totals.undeclared += u64::from(matches!(why, Unanswered::Undeclared(_)));
                 self.totals.skipped += 1;
                 self.not_passed("skipped", probe);
                 let reasons = self.counts.reason.get_or_insert_default();
@@ -186,14 +186,14 @@ impl TableStanding<'_> {
                 false
             }
             Unanswered::Missing | Unanswered::Unasked => {
-                self.counts.missing += 1;
+                self.counts.totals.missing += 1;
                 self.not_passed("missing", probe);
                 false
             }
             Unanswered::Unjudged(message) | Unanswered::Broken(message) => {
                 self.failed(probe);
-                self.counts.unjudged += 1;
-                self.counts.broken += u64::from(matches!(why, Unanswered::Broken(_)));
+                self.counts.totals.unjudged += 1;
+                self.counts.totals.broken += u64::from(matches!(why, Unanswered::Broken(_)));
                 let (stage, adapter) = (Stage::Answer.name(), &self.subject.identity.name);
                 self.failures.push((u32::MAX, unjudged(probe.id(), message, stage, adapter)));
                 matches!(why, Unanswered::Unjudged(_))

@@ -5,7 +5,7 @@ use crate::subject::Subject;
 use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Promise, Source, SpecialDeviation};
 use lightmeter_document::Word;
 use lightmeter_document::event::{Event, Observer, Stop};
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_document::special::{
     self, ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, PromiseDeviation, RecordUse, Skipped,
     SpecialReport,

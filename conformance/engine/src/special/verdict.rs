@@ -9,7 +9,7 @@ use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
 use lightmeter_catalogue::special::{Class, PROBES, Probe, SpecialDeviation, Way};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::run::{DeviationUse, Failure, Group, Report, Totals};
+use lightmeter_document::report::{DeviationUse, Failure, Group, Report, Totals};
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, Skipped};
 use lightmeter_document::{Number, Word};
 use lightmeter_judge::simplicity;
@@ -135,7 +135,7 @@ impl Table {
             }
             let failing = of_stage.into_iter().filter(|outcome| outcome.verdict.is_failure());
             let mut failures: Vec<(u32, Failure)> =
-                failing.filter_map(|outcome| failure(outcome, results, subject, options)).collect();
+                failing.filter_map(|outcome| failure(outcome, results, subject)).collect();
             failures.sort_by_key(|(simple, _)| *simple);
             report.failures.extend(failures.into_iter().map(|(_, failure)| failure).take(KEPT_FAILURES));
             #[expect(clippy::cast_precision_loss, reason = "a share of a short time")]
@@ -160,12 +160,7 @@ fn granted(deviation: &SpecialDeviation, adapter: &str, report: &mut Report) {
 }
 
 /// What is known of a result that fails, and how simple its operands are.
-pub(super) fn failure(
-    outcome: &ProbeResult,
-    results: &Results,
-    subject: &Subject,
-    options: &Options,
-) -> Option<(u32, Failure)> {
+pub(super) fn failure(outcome: &ProbeResult, results: &Results, subject: &Subject) -> Option<(u32, Failure)> {
     let probe = Probe::by_name(&outcome.probe)?;
     let (reference, interval) = probe.promise.bounds(probe.gives);
     let legal = match (outcome.verdict, outcome.recorded) {
@@ -180,7 +175,7 @@ pub(super) fn failure(
     };
     let operands: Vec<f32> = probe.inputs.iter().map(|&bits| f32::from_bits(bits)).collect();
     let told = Failure {
-        rerun: format!("lightmeter run '{}' --adapter {}{}", probe.id(), subject.identity.name, options.rerun),
+        rerun: String::new(),
         id: probe.id(),
         adapter: subject.identity.name.clone(),
         stage: outcome.stage.clone(),

@@ -12,7 +12,7 @@ use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::cases::{Naive, Stable};
 use lightmeter_catalogue::select::{CaseRef, Member, catalogue};
-use lightmeter_document::run::{Cost, Examined, Report, StableForm};
+use lightmeter_document::report::{Cost, Examined, Problem, ProblemKind, Report, StableForm};
 use lightmeter_document::{Number, error_told};
 use std::collections::BTreeMap;
 
@@ -218,12 +218,12 @@ fn references(member: &Member, rows: &HardRows) -> Vec<f64> {
 
 /// The group verdict: what a stable form that breaks its claim is told by.
 #[must_use]
-pub fn problem(examined: &[Examined], group: &str, adapter: &str, stage: &str) -> Option<String> {
+pub fn problem(examined: &[Examined], group: &str, adapter: &str, stage: &str) -> Option<Problem> {
     let of_group =
         |one: &&Examined| one.adapter == adapter && one.stage == stage && one.id.starts_with(&format!("{group}/"));
     let broken: Vec<&Examined> = examined.iter().filter(of_group).filter(|one| !one.is_stable()).collect();
     let worst = broken.iter().max_by(|a, b| (a.stable.0 / a.bound).total_cmp(&(b.stable.0 / b.bound)))?;
-    Some(format!(
+    let says = format!(
         "unstable at {} hard case{}: at {} it errs by {}, where the form claims {}; {} is the form that makes no such claim",
         broken.len(),
         if broken.len() == 1 { "" } else { "s" },
@@ -231,5 +231,6 @@ pub fn problem(examined: &[Examined], group: &str, adapter: &str, stage: &str) -
         error_told(Number(worst.stable.0.round()), "roundings"),
         worst.bound,
         worst.naive_formula
-    ))
+    );
+    Some(Problem::new(ProblemKind::Stability, says))
 }

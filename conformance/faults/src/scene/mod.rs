@@ -133,9 +133,9 @@ mod tests {
         {
             let whole = diagnosis(scene, name, |_| true);
             let named = whole.explanations.first().map(|explanation| explanation.faults[0].name);
-            assert_eq!(named, Some(name), "{scene}: {}", whole.sentence);
+            assert_eq!(named, Some(name), "{scene}: {}", whole.diagnosis);
             let part = diagnosis(scene, name, |column| column % 2 == 0);
-            assert!(part.failing > 0 && part.explanations.is_empty(), "{scene}, {name}: {}", part.sentence);
+            assert!(part.failing > 0 && part.explanations.is_empty(), "{scene}, {name}: {}", part.diagnosis);
         }
     }
 
@@ -154,9 +154,9 @@ mod tests {
         let shininess = |factor: f32| {
             move |frame: &mut Frame| frame.draws.iter_mut().for_each(|draw| draw.material.shininess *= factor)
         };
-        let told = of_changed("phong", shininess(2.0)).sentence;
+        let told = of_changed("phong", shininess(2.0)).diagnosis.to_string();
         assert!(told.contains("explained by: the shininess is 2 times what was asked"), "{told}");
-        let told = of_changed("teapot", shininess(1.7)).sentence;
+        let told = of_changed("teapot", shininess(1.7)).diagnosis.to_string();
         let factor = told.split("the shininess is ").nth(1).and_then(|rest| rest.split(' ').next());
         let factor: f64 = factor.and_then(|factor| factor.parse().ok()).expect("a factor is told");
         assert!((factor - 1.7).abs() < 0.02, "{told}");
@@ -165,7 +165,7 @@ mod tests {
                 *density *= 1.5;
             }
         });
-        assert!(told.sentence.contains("the fog's density is 1.5 times"), "{}", told.sentence);
+        assert!(told.diagnosis.to_string().contains("the fog's density is 1.5 times"), "{}", told.diagnosis);
     }
 
     #[test]
@@ -182,7 +182,7 @@ mod tests {
         let place = SCENE_FAULTS.iter().find_map(saturated).expect("a mistake saturates a pixel");
         image.pixels[place][0] = 255.0;
         let found = Trial::new(&frame, &image, &expected, &WGSL).diagnose();
-        assert!(found.failing > 0 && found.explanations.is_empty(), "{}", found.sentence);
+        assert!(found.failing > 0 && found.explanations.is_empty(), "{}", found.diagnosis);
     }
 
     #[test]
@@ -218,6 +218,6 @@ mod tests {
              all are in columns 40 to 79 and rows 30 to 59",
             lightmeter_document::thousands(failing as u64)
         );
-        assert_eq!(found.sentence, told);
+        assert_eq!(found.diagnosis.to_string(), told);
     }
 }

@@ -85,7 +85,7 @@ pub fn selftest(
                     first.faults.iter().any(|own| own.name == fault.name) && first.faults.len() == 1
                         || draw::<f32>(&frame, &first.faults) == image
                 });
-                Some(if is_named { Ok(()) } else { Err(diagnosis.sentence) })
+                Some(if is_named { Ok(()) } else { Err(diagnosis.diagnosis.to_string()) })
             })
             .collect();
         if stop.is_set() {

@@ -23,7 +23,7 @@ use lightmeter_document::Document as _;
 use lightmeter_document::by_case::{RendererUse, SourcePlace};
 use lightmeter_document::event::Stop;
 use lightmeter_document::protocol::SceneRequest;
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_engine::device::DeviceError;
 use lightmeter_engine::renderer::{AskedPixels, AskedRenderer, AskedScene};
 use lightmeter_engine::rows::Rows;

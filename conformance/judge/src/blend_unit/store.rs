@@ -11,9 +11,13 @@
 //! where such errors cancel, where not most values are the nearest or the mean distance is an eighth of a step (Mesa's: 80 %
 //! and 0.09 at worst).
 
+use super::model::BlendUnitModel;
 use super::pixel::step_below;
 use super::rules::Store;
+use crate::devices::Known;
+use lightmeter_document::report::{Problem, ProblemKind, SampledStores, SpecialUse, StoreUse};
 pub use lightmeter_document::sweep::StoreCounts;
+use lightmeter_scene::target::{Encoding, TargetFormat};
 
 /// References this near to a whole step are that step; those this near to the middle between two have no nearest.
 pub const NEAR: f64 = 1e-3;
@@ -51,6 +55,65 @@ pub fn problem_of(components: &[StoreCounts; 4], states: usize) -> Option<String
     let (_, first) = found.first()?;
     let wrong: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
     Some(format!("{} {} {first}", wrong.join(", "), if found.len() > 1 { "are" } else { "is" }))
+}
+
+/// The model that a device is known to follow bit for bit on a target.
+#[must_use]
+pub fn declared_model(known: &Known, target: TargetFormat) -> Option<BlendUnitModel> {
+    known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8)
+}
+
+/// The group verdict on what a blend unit left: each value may be legal and the whole still wrong.
+#[must_use]
+pub fn problems<'a>(
+    special: impl IntoIterator<Item = &'a SpecialUse>,
+    stores: &SampledStores,
+    known: &Known,
+    target: TargetFormat,
+) -> Vec<Problem> {
+    let is_recorded = known.special_record.is_some_and(|(_, this_version)| this_version);
+    if let Some(other) = special.into_iter().find(|special| is_recorded && !special.is_as_recorded()) {
+        let recorded = other.recorded.as_deref().unwrap_or_default();
+        let says = format!("{} gives {}, where {recorded} is on record for this driver", other.id, other.seen);
+        return vec![Problem::new(ProblemKind::Special, says)];
+    }
+    let [of, others] = stores.model;
+    if let Some(model) = declared_model(known, target)
+        && others > 0
+    {
+        let first = stores.departure.as_deref().unwrap_or_default();
+        let departs = format!("{others} of {of} values are not as {} has them, the first in {first}", model.name());
+        return store_problem(stores).into_iter().chain([Problem::new(ProblemKind::Model, departs)]).collect();
+    }
+    if of > 0 { vec![] } else { store_problem(stores).into_iter().collect() }
+}
+
+/// What is wrong with how values are stored: of a component in all states, or of one in some.
+fn store_problem(stores: &SampledStores) -> Option<Problem> {
+    if let Some(problem) = problem_of(&stores.components, stores.states.len()) {
+        return Some(Problem::new(ProblemKind::Store, problem));
+    }
+    let mut states = stores.states.iter().filter_map(|state| Some((&state.id, problem_of(&state.components, 1)?)));
+    let (id, problem) = states.next()?;
+    let others = states.count();
+    let others = if others > 0 { format!(", and so in {others} other states") } else { String::new() };
+    Some(Problem::new(ProblemKind::StoreOfState, format!("in {id} {problem}{others}")))
+}
+
+/// How values are stored: as the declared model has them, if all are, or as most values say.
+#[must_use]
+pub fn store_of(stores: &SampledStores, known: &Known, target: TargetFormat) -> Option<StoreUse> {
+    let mut all = StoreCounts::default();
+    stores.components.iter().for_each(|counts| all.add(counts));
+    let [of, others] = stores.model;
+    if let Some(model) = declared_model(known, target)
+        && of > 0
+        && others == 0
+    {
+        return Some(StoreUse { identified: model.name().into(), share: 1.0, of, bias: all.bias() });
+    }
+    let (store, share) = all.likeliest();
+    (all.of >= ENOUGH).then(|| StoreUse { identified: store.name().into(), share, of: all.of, bias: all.bias() })
 }
 
 impl Stores for StoreCounts {

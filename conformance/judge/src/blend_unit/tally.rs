@@ -10,7 +10,7 @@ use crate::tally::Tally;
 use crate::{Outcome, Verdict, margin, simplicity};
 use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
-use lightmeter_document::run::Tiers;
+use lightmeter_document::report::{Counted, Diagnosis, Explanation, Standing, Tiers};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::Separate;
 use lightmeter_scene::target::{Encoding, TargetFormat};
@@ -209,17 +209,33 @@ impl FailingPixel {
     }
 }
 
-/// The faults that explain the most of the failing pixels, if nine in ten are explained: what it is as if, how many, and of
-/// how many. In some states two faults come to the same.
+/// The faults that explain the most of the failing pixels, if nine in ten are explained. In some states two faults come to the same. `None` where
+/// nothing fails.
 #[must_use]
-pub fn explain(samples: &[FailingPixel]) -> Option<(String, usize, usize)> {
+pub fn diagnose(samples: &[FailingPixel]) -> Option<Diagnosis> {
     let target = samples.first()?.drawn.target;
     let tried = FAULTS.iter().filter(|fault| fault.concerns(target));
     let explained: Vec<(&UnitFault, usize)> =
         tried.map(|fault| (fault, samples.iter().filter(|sample| sample.is_as_by(fault)).count())).collect();
     let most = explained.iter().map(|(_, count)| *count).max()?;
-    let alike: Vec<&str> = explained.iter().filter(|(_, count)| *count == most).map(|(fault, _)| fault.says).collect();
-    (10 * most >= 9 * samples.len()).then(|| (alike.join(", or as if "), most, samples.len()))
+    let is_enough = 10 * most >= 9 * samples.len();
+    let alike = explained.iter().filter(|(_, count)| is_enough && *count == most).enumerate();
+    let explanations = alike.map(|(place, (fault, _))| Explanation {
+        says: format!("as if {}", fault.says),
+        mistakes: vec![],
+        parameter: None,
+        explained: most as u64,
+        open: 0,
+        standing: if place == 0 { Standing::Best } else { Standing::Equal },
+    });
+    let looked_at = samples.len() as u64;
+    Some(Diagnosis {
+        counts: Counted::Pixels,
+        failing: looked_at,
+        looked_at,
+        explanations: explanations.collect(),
+        ..Diagnosis::default()
+    })
 }
 
 #[cfg(test)]

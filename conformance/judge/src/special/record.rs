@@ -5,7 +5,7 @@
 
 use crate::devices::version;
 use lightmeter_catalogue::special::Probe;
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;

@@ -1,6 +1,6 @@
 //! A card of something that fails, and how much of it does.
 
-use lightmeter_document::run::Group;
+use lightmeter_document::report::Group;
 use maud::Markup;
 
 /// What fails, told by itself.
@@ -29,13 +29,14 @@ pub(super) fn source_of(group: &Group) -> String {
 pub(super) fn judged(group: &Group) -> (u64, u64) {
     let by_case = group.by_case.as_ref().filter(|_| group.image.is_none());
     by_case.map_or((group.totals.failed, group.totals.verdicts), |counts| {
-        (counts.failed.saturating_sub(counts.expected_failures), counts.asked)
+        (counts.totals.failed.saturating_sub(counts.totals.expected_failures), counts.totals.asked)
     })
 }
 
 /// The share of groups' verdicts that fail or are missing, by which the worst comes first.
 pub(super) fn failing_share(groups: &[&Group]) -> f64 {
-    let unanswered = |group: &Group| group.by_case.as_ref().map_or(0, |counts| counts.missing + counts.undeclared);
+    let unanswered =
+        |group: &Group| group.by_case.as_ref().map_or(0, |counts| counts.totals.missing + counts.totals.undeclared);
     let count = |group: &Group| {
         let (failed, of) = judged(group);
         (failed + unanswered(group), of)

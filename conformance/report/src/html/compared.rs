@@ -1,7 +1,7 @@
 //! What is worse or better than in a baseline, as lines of a report.
 
 use super::matrix::{self, is_failing};
-use lightmeter_document::run::{Group, Report};
+use lightmeter_document::report::{Group, Report};
 use maud::{Markup, html};
 use std::collections::HashMap;
 
@@ -52,7 +52,7 @@ pub(super) fn compared(report: &Report, lines: &[String]) -> Vec<Markup> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter_document::run::Totals;
+    use lightmeter_document::report::Totals;
 
     fn group(stage: &'static str, failed: u64) -> Group {
         let totals = Totals { cases: 9, verdicts: 9, failed, ..Totals::default() };

@@ -7,7 +7,7 @@ use super::page::prose;
 use super::plot;
 use crate::text::{made_at, plain, unit_of};
 use lightmeter_document::explained::{Explained, ShownMistake, ShownStep};
-use lightmeter_document::run::{Failure, Group, Report, WorstAnswer};
+use lightmeter_document::report::{Failure, Group, Report, WorstAnswer};
 use lightmeter_document::{Number, Word, distance_told, is_worse, thousands};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
@@ -43,11 +43,7 @@ pub(super) fn cards(report: &Report) -> (Vec<Card>, usize) {
         place: format!("{}, {}{}", groups[0].adapter, stages(groups), source_of(groups[0])),
         share: failing_share(groups),
         cause: groups.iter().find_map(|group| {
-            group
-                .cause
-                .clone()
-                .or_else(|| group.problem.clone())
-                .or_else(|| group.by_case.as_ref().and_then(unanswered))
+            group.cause().or_else(|| group.problem()).or_else(|| group.by_case.as_ref().and_then(unanswered))
         }),
         body: card(report, groups, place < OPEN),
     };
@@ -138,16 +134,16 @@ fn failed_of(group: &Group) -> String {
 
 /// Why cases of a group were not answered, or which these are.
 fn why_unanswered(group: &Group) -> Option<String> {
-    let counts = group.by_case.as_ref().filter(|counts| counts.missing + counts.undeclared > 0)?;
+    let counts = group.by_case.as_ref().filter(|counts| counts.totals.missing + counts.totals.undeclared > 0)?;
     let mut said = vec![];
-    if let Some(named) = counts.not_passed.get("missing").filter(|_| counts.missing > 0) {
+    if let Some(named) = counts.not_passed.get("missing").filter(|_| counts.totals.missing > 0) {
         let more = if named.len() > MOST_NAMED { ", …" } else { "" };
         said.push(format!(
             "never answered: {}{more}",
             named.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ")
         ));
     }
-    if counts.undeclared > 0 {
+    if counts.totals.undeclared > 0 {
         let why = counts.reason.as_deref().unwrap_or("no reason was given");
         said.push(format!("skipped without having been declared: {why}"));
     }
@@ -169,9 +165,9 @@ fn card(report: &Report, groups: &[&Group], is_open: bool) -> Markup {
                 span.quiet { @for own in groups { (own.place()) ": " (failed_of(own)) " " } }
             }
             @for (place, own) in groups.iter().enumerate() {
-                @for what in own.explanation.iter().chain(&own.problem) {
-                    @if place == 0 || !groups[..place].iter().any(|other| other.explanation.as_ref() == Some(what) || other.problem.as_ref() == Some(what)) {
-                        p.cause { (written(what)) }
+                @for what in own.reasons() {
+                    @if place == 0 || !groups[..place].iter().any(|other| other.reasons().any(|known| known == what)) {
+                        p.cause { (written(&what)) }
                     }
                 }
                 @if let Some(why) = why_unanswered(own) { p.cause { (why) } }
@@ -272,7 +268,7 @@ enum Hint {
 fn hint_of(groups: &[&Group], explained: Option<&Explained>) -> Hint {
     if explained.is_some_and(|explained| explained.mistake.is_some()) {
         Hint::InTheResult
-    } else if groups.iter().any(|group| group.cause.is_some() || group.explanation.is_some()) {
+    } else if groups.iter().any(|group| group.diagnosis.is_some()) {
         Hint::AsTheCauseSays
     } else {
         Hint::Unknown
@@ -342,6 +338,7 @@ fn steps(explained: &Explained, hint: &Hint) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightmeter_document::report::{Diagnosis, Explanation, Standing};
 
     fn step(name: &'static str, component: Option<&'static str>) -> ShownStep {
         let value = Number(0.0);
@@ -375,7 +372,15 @@ mod tests {
     fn a_cause_that_is_known_is_not_called_unknown() {
         let mut group = Group::new("fog/exp".into(), "renderer".into(), "answer");
         assert!(matches!(hint_of(&[&group], None), Hint::Unknown));
-        group.cause = Some("fog uses radial distance (fog-radial)".into());
+        let explanation = Explanation {
+            says: "fog uses radial distance".into(),
+            mistakes: vec!["fog-radial".into()],
+            parameter: None,
+            explained: 1,
+            open: 0,
+            standing: Standing::Best,
+        };
+        group.diagnosis = Some(Diagnosis { explanations: vec![explanation], ..Diagnosis::default() });
         assert!(matches!(hint_of(&[&group], None), Hint::AsTheCauseSays));
     }
 }

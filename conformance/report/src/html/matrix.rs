@@ -3,8 +3,8 @@
 use super::card::judged;
 use super::number::written as as_written;
 use lightmeter_document::by_case::CaseCounts;
-use lightmeter_document::gate::cases;
-use lightmeter_document::run::{Group, Report};
+use lightmeter_document::cases;
+use lightmeter_document::report::{Group, Report};
 use lightmeter_document::{Number, error_told, thousands};
 use maud::{Markup, html};
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,18 +24,18 @@ pub(super) struct Column<'a> {
 
 /// Whether a group is wrong: a value of it, the whole, or a case that was not answered though it was to be.
 pub(super) fn is_failing(group: &Group) -> bool {
-    group.totals.failed > 0 || group.problem.is_some() || group.by_case.as_ref().is_some_and(CaseCounts::is_failed)
+    group.is_failed()
 }
 
 /// What of a group's cases was not answered though it was to be, in sentences.
 pub(super) fn unanswered(counts: &CaseCounts) -> Option<String> {
     let said: Vec<String> =
-        [(counts.missing, "never answered"), (counts.undeclared, "skipped without having been declared")]
+        [(counts.totals.missing, "never answered"), (counts.totals.undeclared, "skipped without having been declared")]
             .into_iter()
             .filter(|(count, _)| *count > 0)
             .map(|(count, what)| {
                 let was = if count == 1 { "was" } else { "were" };
-                format!("{} of {} {was} {what}.", thousands(count), cases(counts.asked))
+                format!("{} of {} {was} {what}.", thousands(count), cases(counts.totals.asked))
             })
             .collect();
     (!said.is_empty()).then(|| said.join(" "))
@@ -89,7 +89,7 @@ fn cell(group: &Group) -> (&'static str, String, String) {
     let (number, error) = (share(group.margin_max), error_told(group.error_ulp_max, unit(group)));
     let says = format!("{} cases; greatest error {error}, {number} of what is legal", thousands(totals.cases));
     if is_failing(group) {
-        let not_answered = group.by_case.as_ref().filter(|_| totals.failed == 0 && group.problem.is_none());
+        let not_answered = group.by_case.as_ref().filter(|_| totals.failed == 0 && group.problems.is_empty());
         if let Some(says) = not_answered.and_then(unanswered) {
             return ("fail", "✗".into(), says);
         }
@@ -100,7 +100,7 @@ fn cell(group: &Group) -> (&'static str, String, String) {
         };
         return ("fail", format!("✗ {number}"), format!("{what}; {says}"));
     }
-    if totals.expected_failures > 0 || group.expected_problem.is_some() {
+    if totals.expected_failures > 0 || !group.expected_problems.is_empty() {
         let what = match totals.expected_failures {
             0 => "as a whole it fails as known".into(),
             count => format!("{} fail as known", thousands(count)),
@@ -120,7 +120,7 @@ fn cell(group: &Group) -> (&'static str, String, String) {
 
 /// Why a group is no cell of its subject: it was not asked, since the subject does not have it.
 fn not_had(group: &Group) -> Option<String> {
-    let counts = group.by_case.as_ref().filter(|counts| counts.asked == 0 && counts.not_asked > 0)?;
+    let counts = group.by_case.as_ref().filter(|counts| counts.totals.asked == 0 && counts.totals.not_asked > 0)?;
     let reason = counts.reason.as_deref().or(group.skip_reason.as_deref()).unwrap_or("no reason was given");
     Some(format!("not asked: {reason}"))
 }
@@ -291,23 +291,46 @@ pub(super) fn write_markdown(columns: &[Column<'_>], out: &mut impl Write) -> Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter_document::run::Totals;
+    use lightmeter_document::by_case::CaseTotals;
+    use lightmeter_document::report::Totals;
 
     fn cell_of(verdicts: u64, counts: CaseCounts) -> (&'static str, String, String) {
-        let totals = Totals { cases: counts.asked, verdicts, ..Totals::default() };
+        let totals = Totals { cases: counts.totals.asked, verdicts, ..Totals::default() };
         cell(&Group { totals, by_case: Some(counts), ..Group::new("fog/exp".into(), "renderer".into(), "answer") })
     }
 
     #[test]
     fn what_was_not_answered_or_not_asked_does_not_pass() {
-        let missing = cell_of(0, CaseCounts { asked: 3, missing: 3, ..CaseCounts::default() });
+        let missing = cell_of(
+            0,
+            CaseCounts {
+                totals: CaseTotals { asked: 3, missing: 3, ..CaseTotals::default() },
+                ..CaseCounts::default()
+            },
+        );
         assert_eq!(missing, ("fail", "✗".into(), "3 of 3 cases were never answered.".into()));
-        let partly = cell_of(2, CaseCounts { asked: 3, passed: 2, missing: 1, ..CaseCounts::default() });
+        let partly = cell_of(
+            2,
+            CaseCounts {
+                totals: CaseTotals { asked: 3, passed: 2, missing: 1, ..CaseTotals::default() },
+                ..CaseCounts::default()
+            },
+        );
         assert_eq!(partly, ("fail", "✗".into(), "1 of 3 cases was never answered.".into()));
         let reason = Some("the renderer does not declare it".to_owned());
-        let not_asked = cell_of(0, CaseCounts { not_asked: 3, reason, ..CaseCounts::default() });
+        let not_asked = cell_of(
+            0,
+            CaseCounts {
+                totals: CaseTotals { not_asked: 3, ..CaseTotals::default() },
+                reason,
+                ..CaseCounts::default()
+            },
+        );
         assert_eq!(not_asked, ("skip", String::new(), "not asked: the renderer does not declare it".into()));
-        let passing = cell_of(3, CaseCounts { asked: 3, passed: 3, ..CaseCounts::default() });
+        let passing = cell_of(
+            3,
+            CaseCounts { totals: CaseTotals { asked: 3, passed: 3, ..CaseTotals::default() }, ..CaseCounts::default() },
+        );
         assert_eq!((passing.0, passing.1.as_str()), ("pass", "0"));
     }
 
@@ -338,7 +361,11 @@ mod tests {
     #[test]
     fn formulas_that_a_renderer_does_not_have_are_counted_nowhere() {
         let reason = Some("the renderer does not declare it".to_owned());
-        let counts = CaseCounts { not_asked: 3, reason, ..CaseCounts::default() };
+        let counts = CaseCounts {
+            totals: CaseTotals { not_asked: 3, ..CaseTotals::default() },
+            reason,
+            ..CaseCounts::default()
+        };
         let lacks = Group { by_case: Some(counts), ..Group::new("fog/exp".into(), "renderer".into(), "answer") };
         let totals = Totals { cases: 1, verdicts: 1, ..Totals::default() };
         let has = Group { totals, ..Group::new("vector/dot".into(), "renderer".into(), "answer") };

@@ -22,43 +22,29 @@ pub use number::written;
 pub use page::{PageKind, embedded, page, prose};
 pub use plot::course as course_plot;
 
-use crate::against::{Against, BASELINE};
+use crate::against::{BASELINE, lines};
 use crate::bench::{page as bench_page, plot as bench_plot};
 use crate::page::selftest::{self, SelftestRun};
 use crate::page::sweep::{self, Swept};
 use card::{Card, percent};
 use compared::compared;
 use lightmeter_document::bench::BenchDocument;
-use lightmeter_document::gate::GateReport;
-use lightmeter_document::run::Report;
+use lightmeter_document::report::Report;
 use matrix::Column;
 use maud::{Markup, html};
 use overview::Facts;
 use std::fmt;
 use verdict::Verdict;
 
-/// The page of a run.
+/// The page of a result.
 #[must_use]
-pub fn of_run(report: &Report) -> String {
-    run_page(report, Verdict::of_run(report), &[])
-}
-
-/// The page of a gate, whose counts are of cases.
-#[must_use]
-pub fn of_gate(gate: &GateReport) -> String {
-    let report = Report::from(gate.clone());
-    let incidents: Vec<String> = gate.incidents.iter().chain(&gate.problems.first).cloned().collect();
-    let verdict = Verdict::of_gate(gate, &report);
-    run_page(&report, verdict, &incidents)
-}
-
-fn run_page(report: &Report, verdict: Verdict, incidents: &[String]) -> String {
-    let facts = Facts::of_run(report, verdict);
+pub fn of_report(report: &Report) -> String {
+    let facts = Facts::of_report(report, Verdict::new(report));
     let columns = matrix::columns(&[("", report)]);
     let passing = failure::passing_cards(report);
     let body = html! {
         (overview::head(&facts))
-        (against(report, incidents))
+        (against(report))
         (failures(report))
         @if !passing.is_empty() {
             section #nearest {
@@ -118,8 +104,10 @@ fn all(columns: &[Column<'_>], has_cards: bool) -> Markup {
 }
 
 /// What a comparison with a baseline says, what was expected to fail, and what went wrong with a renderer.
-fn against(report: &Report, incidents: &[String]) -> Markup {
-    let lines = Against::of_run(report).lines();
+fn against(report: &Report) -> Markup {
+    let lines = lines(report);
+    let incidents: Vec<&String> =
+        report.renderer.iter().flat_map(|renderer| renderer.incidents.iter().chain(&renderer.problems.first)).collect();
     let has_baseline = !(report.regressions.is_empty() && report.mended.is_empty() && report.added.is_empty());
     html! {
         @if !incidents.is_empty() {
@@ -158,9 +146,9 @@ pub fn of_matrix(reports: &[(&str, &Report)]) -> String {
     page(&facts.title, PageKind::Report, &body)
 }
 
-/// Why a gate does not pass, as its exit code has it, in sentences; `None` where it passes.
-pub(crate) fn why_not(gate: &GateReport) -> Option<String> {
-    let verdict = Verdict::of_gate(gate, &Report::from(gate.clone()));
+/// Why a result does not pass, as its exit code has it, in sentences; `None` where it passes.
+pub(crate) fn why_not(report: &Report) -> Option<String> {
+    let verdict = Verdict::new(report);
     (!verdict.is_success).then(|| verdict.sentences.join(" "))
 }
 

@@ -6,8 +6,7 @@ use crate::page::selftest::SelftestRun;
 use crate::page::sweep::{Swept, command};
 use crate::text::unbound;
 use lightmeter_document::bench::BenchDocument;
-use lightmeter_document::gate::GateReport;
-use lightmeter_document::run::{Identity, Report};
+use lightmeter_document::report::{Identity, Report};
 use lightmeter_document::thousands;
 use maud::{Markup, html};
 use std::collections::BTreeSet;
@@ -42,7 +41,7 @@ fn made(version: Option<&str>, at: Option<&str>, seconds: Option<f64>) -> Vec<(S
 }
 
 impl Facts {
-    pub(super) fn of_run(report: &Report, verdict: Verdict) -> Self {
+    pub(super) fn of_report(report: &Report, verdict: Verdict) -> Self {
         let subject = match (&report.renderer, report.adapters.as_slice()) {
             (Some(renderer), _) => format!("{} {}", renderer.identity.name, renderer.identity.version),
             (None, [one]) => one.name.clone(),
@@ -140,11 +139,7 @@ impl Facts {
 
     /// Of several results side by side.
     pub(super) fn of_matrix(reports: &[(&str, &Report)]) -> Self {
-        let verdict = |report: &Report| match report.renderer {
-            Some(_) => Verdict::of_gate(&GateReport::of(report, String::new(), None), report),
-            None => Verdict::of_run(report),
-        };
-        let verdicts: Vec<Verdict> = reports.iter().map(|(_, report)| verdict(report)).collect();
+        let verdicts: Vec<Verdict> = reports.iter().map(|(_, report)| Verdict::new(report)).collect();
         let passing = verdicts.iter().filter(|verdict| verdict.is_success).count();
         let says = match (passing, verdicts.len()) {
             (1, 1) => "The result passes.".into(),
@@ -205,12 +200,16 @@ pub(super) fn notes(report: &Report) -> Markup {
             None => skips.push((reason, 1)),
         }
     }
-    let has_notes = !skips.is_empty() || !report.deviations.is_empty() || !report.expectations.is_empty();
+    let has_notes = !(skips.is_empty()
+        && report.deviations.is_empty()
+        && report.expectations.is_empty()
+        && report.notes.is_empty());
     html! {
         @if has_notes {
             section #notes {
                 h2 { "What was excused, expected or left out" }
                 ul {
+                    @for note in &report.notes { li { (note) } }
                     @for deviation in &report.deviations {
                         li { b { (deviation.name) } " of " (deviation.adapter) ": " (deviation.reason) "; "
                             "it excuses " (thousands(deviation.excused)) " verdicts, and its witness "

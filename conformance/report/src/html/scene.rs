@@ -4,7 +4,7 @@ use super::card::{Card, failing_share, source_of};
 use super::failure::command;
 use super::matrix::{card_id, is_failing};
 use super::page::embedded;
-use lightmeter_document::run::{Failure, Group, ImageUse, PixelUse, Report};
+use lightmeter_document::report::{Departure, Failure, Group, ImageUse, PixelUse, Report};
 use lightmeter_document::{Number, thousands};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
@@ -99,7 +99,7 @@ pub(super) fn cards(report: &Report) -> Vec<Card> {
         name: wrong.group.id.clone(),
         place: format!("{}, {}{}", wrong.group.adapter, wrong.places(), source_of(wrong.group)),
         share: failing_share(&[wrong.group]),
-        cause: wrong.group.cause.clone(),
+        cause: wrong.group.cause(),
         body: card(report, wrong, place < OPEN),
     };
     wrong(report).iter().enumerate().map(told).collect()
@@ -158,10 +158,10 @@ fn card(report: &Report, wrong: &Wrong<'_>, is_open: bool) -> Markup {
                     "."
                 }
             }
-            @for what in group.explanation.iter().chain(&group.problem) {
-                p.cause { (what.split("; the worst: ").next().unwrap_or_default()) }
+            @for what in group.reasons() { p.cause { (what) } }
+            @if let Some(Departure { stage, pixels, of }) = &image.departs_in {
+                p { "The first intermediate result that departs: " b { (stage) } " (" (pixels) " of " (of) " pixels looked at)." }
             }
-            @if let Some(stage) = &image.departs_in { p { "The first intermediate result that departs: " b { (stage) } "." } }
             @if let (Some(reference), Some(result)) = (&reference, &result) {
                 div.pictures {
                     figure {

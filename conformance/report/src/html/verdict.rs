@@ -1,8 +1,8 @@
 //! Whether a result passes, and the sentences that say why not: as the exit code of the command that wrote it has it.
 
-use lightmeter_document::by_case::{CaseCounts, Coverage};
-use lightmeter_document::gate::{GateReport, cases};
-use lightmeter_document::run::Report;
+use lightmeter_document::by_case::{CaseTotals, Coverage};
+use lightmeter_document::cases;
+use lightmeter_document::report::Report;
 use lightmeter_document::thousands;
 
 /// Whether all is well, and what was counted, in sentences.
@@ -13,21 +13,9 @@ pub(super) struct Verdict {
 }
 
 impl Verdict {
-    /// Of a run.
-    pub(super) fn of_run(report: &Report) -> Self {
-        let totals = &report.totals;
-        let only_witnesses = totals.cases == 0 && !report.deviations.is_empty();
-        let has_judged = totals.passed + totals.expected_failures > 0 || only_witnesses;
-        Self::new(report, report.is_success(), has_judged, report.coverage())
-    }
-
-    /// Of a gate, which is counted by its cases; `report` is the same as a run.
-    pub(super) fn of_gate(gate: &GateReport, report: &Report) -> Self {
-        let is_right = gate.interrupted.is_none() && !gate.is_failed() && !gate.is_broken();
-        Self::new(report, is_right, gate.has_judged(), gate.coverage())
-    }
-
-    fn new(report: &Report, is_right: bool, has_judged: bool, coverage: Coverage) -> Self {
+    /// Of a result.
+    pub(super) fn new(report: &Report) -> Self {
+        let (is_right, has_judged, coverage) = (report.is_success(), report.has_judged(), report.coverage());
         let lacking = report.required.filter(|required| !coverage.is_enough(required.0)).map(|required| {
             let Coverage { chosen, judged, excluded } = coverage;
             let [chosen, judged, excluded] = [chosen, judged, excluded].map(thousands);
@@ -73,24 +61,19 @@ fn ended(report: &Report) -> Vec<String> {
     said
 }
 
-/// The sum of a count of cases, where cases were counted.
-fn sum(report: &Report, count: fn(&CaseCounts) -> u64) -> u64 {
-    report.groups.iter().filter_map(|group| group.by_case.as_ref()).map(count).sum()
-}
-
 /// How many verdicts there are, on how many cases, and how many of them are not legal though that is expected.
 fn counted(report: &Report, is_right: bool) -> String {
     let verdicts = report.groups.iter().map(|group| group.totals.verdicts).sum::<u64>();
     let all = report.groups.iter().map(|group| group.totals.cases).sum::<u64>();
-    let left_out = report.groups.iter().map(|group| group.totals.skipped).sum::<u64>() + sum(report, |of| of.missing);
+    let left_out = report.groups.iter().map(|group| group.totals.skipped).sum::<u64>() + report.cases().missing;
     let mut said = match verdicts {
         0 => "No value was judged".to_owned(),
         _ => format!("{} verdicts on {}", thousands(verdicts), cases(all.saturating_sub(left_out))),
     };
-    let failing = report.groups.iter().filter(|group| group.totals.failed > 0 || group.problem.is_some()).count();
+    let failing = report.groups.iter().filter(|group| group.totals.failed > 0 || !group.problems.is_empty()).count();
     let (by_verdict, by_case) = (
         report.groups.iter().map(|group| group.totals.expected_failures).sum::<u64>(),
-        sum(report, |of| of.expected_failures),
+        report.cases().expected_failures,
     );
     let expected = match (by_case, by_verdict) {
         (0, 0) => None,
@@ -99,7 +82,7 @@ fn counted(report: &Report, is_right: bool) -> String {
         (1, _) => Some("one case fails as expected".to_owned()),
         (several, _) => Some(format!("{} cases fail as expected", thousands(several))),
     };
-    let as_whole = report.groups.iter().filter(|group| group.expected_problem.is_some()).count();
+    let as_whole = report.groups.iter().filter(|group| !group.expected_problems.is_empty()).count();
     let expected = expected.or_else(|| match as_whole {
         0 => None,
         1 => Some("one group fails as a whole, as expected".to_owned()),
@@ -139,7 +122,7 @@ fn left_open(report: &Report, undecided: u64) -> String {
 
 /// What is wrong besides values that are not legal.
 fn wrong(report: &Report) -> Vec<String> {
-    let [missing, undeclared] = [sum(report, |of| of.missing), sum(report, |of| of.undeclared)];
+    let CaseTotals { missing, undeclared, .. } = report.cases();
     let not_needed = report.deviations.iter().filter(|deviation| !deviation.still_needed).count() as u64;
     let [worse, unexpected] = [report.regressions.len(), report.passing_unexpectedly().count()].map(|n| n as u64);
     [
@@ -173,21 +156,22 @@ fn wrong(report: &Report) -> Vec<String> {
 mod tests {
     use super::*;
     use lightmeter_document::Number;
-    use lightmeter_document::by_case::{ComparedBy, KnownFailure, RendererUse};
-    use lightmeter_document::run::{Group, Totals};
+    use lightmeter_document::by_case::{CaseCounts, ComparedBy, KnownFailure, RendererUse};
+    use lightmeter_document::report::{Group, Totals};
 
     /// A group of a gate: cases that pass, fail, are expected to, were never answered, and were not asked.
     fn group([passed, failed, expected, missing, not_asked]: [u64; 5]) -> Group {
         let asked = passed + failed + expected + missing;
-        let by_case = CaseCounts {
+        let of_cases = CaseTotals {
             asked,
             not_asked,
             passed,
             failed: failed + expected,
             expected_failures: expected,
             missing,
-            ..CaseCounts::default()
+            ..CaseTotals::default()
         };
+        let by_case = CaseCounts { totals: of_cases, ..CaseCounts::default() };
         let totals = Totals { cases: asked, verdicts: asked - missing, failed, ..Totals::default() };
         Group { totals, by_case: Some(by_case), ..Group::new("fog/exp".into(), "renderer".into(), "answer") }
     }
@@ -198,8 +182,8 @@ mod tests {
         let mut report =
             Report { groups: vec![group], renderer, required, ..Report::empty(1, "wgsl".into(), vec![], vec![]) };
         change(&mut report);
-        let gate = GateReport::of(&report, String::new(), None);
-        let verdict = Verdict::of_gate(&gate, &report);
+        report.sum_up();
+        let verdict = Verdict::new(&report);
         (verdict.is_success, verdict.sentences.join(" "))
     }
 

@@ -10,7 +10,7 @@ pub mod sweep;
 
 pub use picture::svg;
 
-use lightmeter_document::run::{BlendState, DeviationUse, Group, Identity, Report, Tiers};
+use lightmeter_document::report::{BlendState, DeviationUse, Group, Identity, Report, Tiers};
 use lightmeter_document::{Document as _, ReadError};
 use lightmeter_scene::blend::{Equation, Factor, State};
 use lightmeter_scene::blend::{Route, routes};

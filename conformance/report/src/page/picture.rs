@@ -2,7 +2,7 @@
 
 use super::{BlendRun, READING};
 use crate::plot::Undrawn;
-use lightmeter_document::run::BlendState;
+use lightmeter_document::report::BlendState;
 use lightmeter_scene::blend::{Factor, State};
 use plotters::prelude::{
     Color as _, FontTransform, IntoDrawingArea as _, IntoFont as _, IntoTextStyle as _, RGBColor, Rectangle,

@@ -1,7 +1,7 @@
 //! The table of renderers, made from the JSON of their gates: a row for each result, in the order in which they are given.
 
 use super::super::html;
-use lightmeter_document::gate::{GateGroup, GateReport};
+use lightmeter_document::report::{Group, Report};
 use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
 
@@ -9,7 +9,7 @@ use std::fmt::{Result, Write};
 ///
 /// # Errors
 /// Where the writer fails.
-pub fn markdown(gates: &[GateReport], out: &mut impl Write) -> Result {
+pub fn markdown(gates: &[Report], out: &mut impl Write) -> Result {
     writeln!(out, "# Renderers\n")?;
     writeln!(
         out,
@@ -30,26 +30,29 @@ pub fn markdown(gates: &[GateReport], out: &mut impl Write) -> Result {
 }
 
 /// A renderer's name and version, and which shard of its cases this is.
-fn name(gate: &GateReport) -> String {
-    let GateReport { renderer, compared_by, .. } = gate;
-    let shard = compared_by.as_ref().and_then(|by| by.shard.as_ref());
+fn name(gate: &Report) -> String {
+    let shard = gate.compared_by.as_ref().and_then(|by| by.shard.as_ref());
     let shard = shard.map_or_else(String::new, |shard| format!(", shard {shard} alone"));
-    format!("{} {}", renderer.name, renderer.version).trim().to_owned() + &shard
+    let name =
+        gate.renderer.as_ref().map(|renderer| format!("{} {}", renderer.identity.name, renderer.identity.version));
+    name.unwrap_or_default().trim().to_owned() + &shard
 }
 
 /// The row of a gate.
-fn row(gate: &GateReport, is_success: bool, out: &mut impl Write) -> Result {
-    let (totals, who) = (&gate.totals, &gate.renderer);
+fn row(gate: &Report, is_success: bool, out: &mut impl Write) -> Result {
+    let totals = gate.cases();
+    let who = gate.renderer.as_ref().map(|renderer| renderer.identity.clone()).unwrap_or_default();
     let asked = |is_scene: bool| {
-        let is_it = |group: &&GateGroup| group.id.starts_with("scene/") == is_scene && group.target.is_none();
-        gate.groups.iter().filter(is_it).filter(|group| group.asked > 0).count() as u64
+        let is_it = |group: &&Group| group.id.starts_with("scene/") == is_scene && group.blended_on().is_none();
+        let is_asked = |group: &&Group| group.by_case.as_ref().is_some_and(|counts| counts.totals.asked > 0);
+        gate.groups.iter().filter(is_it).filter(is_asked).count() as u64
     };
     let words = [
         if is_success { "✓".to_owned() } else { "✗".to_owned() },
         name(gate),
-        who.device.clone().unwrap_or_default(),
-        who.driver.clone().unwrap_or_default(),
-        gate.profile.clone(),
+        who.device.unwrap_or_default(),
+        who.driver.unwrap_or_default(),
+        gate.profile.to_string(),
     ];
     let counts = [
         asked(false),

@@ -1,7 +1,7 @@
 //! The page on the built-in scenes: what each shows, which the caller hands over, and what a run found.
 
 use lightmeter_document::Document as _;
-use lightmeter_document::run::{EffectsCost, Group, Report};
+use lightmeter_document::report::{EffectsCost, Group, Report};
 use lightmeter_scene::effects::Effects;
 use std::fmt::{Result, Write};
 use std::ops::Deref;

@@ -1,7 +1,7 @@
 //! The page on NaN, infinity, subnormals and signed zero, made from the JSON of `lightmeter special`.
 
 use lightmeter_document::Document as _;
-use lightmeter_document::run::Identity;
+use lightmeter_document::report::Identity;
 use lightmeter_document::special::{ProbeClass, ProbeResult, ProbeRow, ProbeSource, SpecialReport};
 use std::fmt::{Result as Written, Write};
 use std::ops::Deref;

@@ -4,7 +4,7 @@
 use crate::bench::figures::{grouped, scientific};
 use crate::plot::{Chart, Quantity, Series, Undrawn, marker};
 use lightmeter_document::Document as _;
-use lightmeter_document::run::{Examined, Report, StableForm};
+use lightmeter_document::report::{Examined, Report, StableForm};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Result as Written, Write};
 use std::ops::Deref;

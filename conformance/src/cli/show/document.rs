@@ -4,7 +4,7 @@ use super::unit::{UnitAnswer, unit_answer};
 use super::{Answer, Known, outcome};
 use lightmeter::arithmetic::Accept;
 use lightmeter::cases::Input;
-use lightmeter::document::run::Examined;
+use lightmeter::document::report::Examined;
 use lightmeter::document::show::{
     SCHEMA, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding, ShownValue,
 };

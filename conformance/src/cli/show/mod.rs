@@ -15,7 +15,7 @@ use clap::Args;
 use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::blend::{Samples, separate_of, written_state};
 use lightmeter::cases::{Kind, boundary_name};
-use lightmeter::document::run::Examined;
+use lightmeter::document::report::Examined;
 use lightmeter::document::show::{ShowDocument, ShownCase, ShownMistake};
 use lightmeter::document::{Document as _, Number, error_told};
 use lightmeter::evaluate::Evaluator;

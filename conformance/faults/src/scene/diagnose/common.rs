@@ -1,7 +1,6 @@
 //! What failing components have in common where nothing explains them.
 
 use super::{NAMES, Trial, real};
-use lightmeter_document::thousands;
 
 /// What failing components have in common is told where so large a part of them has it.
 const COMMON: f64 = 0.95;
@@ -16,17 +15,11 @@ impl Trial<'_> {
     }
 
     /// What failing components have in common where nothing explains them.
-    pub(super) fn unnamed(&self) -> String {
-        let failing = thousands(self.failing.len() as u64);
-        let told = match self.failing.len() {
-            1 => "nothing in the catalogue explains the failing component of a pixel".into(),
-            _ => format!("nothing in the catalogue explains the {failing} failing components of pixels"),
-        };
+    pub(super) fn in_common(&self) -> Vec<String> {
         if let Some([r, g, b, a]) = self.flat() {
-            return told + &format!(": the whole image is {r} {g} {b} {a}");
+            return vec![format!("the whole image is {r} {g} {b} {a}")];
         }
-        let common: Vec<String> = [self.component(), self.sign(), self.region()].into_iter().flatten().collect();
-        if common.is_empty() { told } else { told + ": " + &common.join(", ") }
+        [self.component(), self.sign(), self.region()].into_iter().flatten().collect()
     }
 
     /// The one component that nearly all failing ones are of.

@@ -6,9 +6,9 @@ mod common;
 mod parameter;
 
 use super::{SCENE_FAULTS, SceneFault, colors, draw, draw_at, places, with};
-use crate::explanation::called;
 use lightmeter_arithmetic::Profile;
-use lightmeter_document::thousands;
+use lightmeter_document::report::{Counted, Diagnosis, Explanation, Standing, Telling, ToldApart};
+use lightmeter_document::{Number, Word};
 use lightmeter_judge::blend_unit::pixel;
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::expect::Expectation;
@@ -19,7 +19,6 @@ use parameter::{FACTORS, PARAMETERS, STEPS, Scaled};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::cmp::Reverse;
-use std::fmt::Write as _;
 
 /// Pixels that are looked at, of those that fail and of those that do not.
 const LOOKED_AT: usize = 512;
@@ -39,8 +38,6 @@ const STEP_ERROR: f64 = 1e-6;
 const MOST_TRIED: usize = 5;
 /// How unlikely chance must be, in bits, beyond the number of mistakes that are tried.
 const BEYOND_CHANCE: f64 = 10.0;
-/// The most explanations that are reported beside the best one although they explain exactly as much.
-const MOST_EQUAL: usize = 2;
 
 /// What may have been drawn in a frame's place.
 #[derive(Clone, Debug)]
@@ -68,16 +65,8 @@ pub struct SceneDiagnosis {
     pub failing: usize,
     /// The best first.
     pub explanations: Vec<SceneExplanation>,
-    /// The outcome as a sentence.
-    pub sentence: String,
-}
-
-impl SceneDiagnosis {
-    /// What the best explanation says, and by which names the catalogue knows it.
-    #[must_use]
-    pub fn cause(&self) -> Option<String> {
-        self.explanations.first().map(says)
-    }
+    /// What a report says of it.
+    pub diagnosis: Diagnosis,
 }
 
 /// An image and all that is known of it.
@@ -158,12 +147,12 @@ impl<'a> Trial<'a> {
     #[must_use]
     pub fn diagnose(&self) -> SceneDiagnosis {
         let failing = self.failing.len();
-        let told = |explanations: Vec<_>, sentence| SceneDiagnosis { failing, explanations, sentence };
         if failing == 0 {
-            return told(vec![], "nothing fails".into());
+            let diagnosis = Diagnosis { counts: Counted::Components, ..Diagnosis::default() };
+            return SceneDiagnosis { failing, explanations: vec![], diagnosis };
         }
         if self.flat().is_some() {
-            return told(vec![], self.unnamed());
+            return self.told(vec![]);
         }
         let singles = self.near(SCENE_FAULTS.iter().map(|fault| vec![fault]).collect());
         let pairs = pairs(&singles);
@@ -178,8 +167,38 @@ impl<'a> Trial<'a> {
         }
         // An explanation that is no better than chance is dropped, and no more complicated explanation is tried in its place.
         found.retain(|one| one.evidence >= real(candidates).log2() + BEYOND_CHANCE);
-        let sentence = if found.is_empty() { self.unnamed() } else { self.named(&found) };
-        told(found, sentence)
+        self.told(found)
+    }
+
+    /// What a report says of what was found.
+    fn told(&self, explanations: Vec<SceneExplanation>) -> SceneDiagnosis {
+        let all = self.failing.len() as u64;
+        let mut diagnosis = Diagnosis { counts: Counted::Components, failing: all, ..Diagnosis::default() };
+        match explanations.first() {
+            None => (diagnosis.looked_at, diagnosis.in_common) = (all, self.in_common()),
+            Some(best) => {
+                diagnosis.looked_at = self.failing_there.len() as u64;
+                let is_equal =
+                    |other: &SceneExplanation| other.explained == best.explained && other.drawn == best.drawn;
+                let standing = |place: usize, one: &SceneExplanation| match place {
+                    0 => Standing::Best,
+                    _ if is_equal(one) => Standing::Equal,
+                    _ => Standing::Next,
+                };
+                let told = |(place, one): (usize, &SceneExplanation)| one.told(standing(place, one));
+                diagnosis.explanations = explanations.iter().enumerate().take(MOST_TRIED).map(told).collect();
+                let next = diagnosis.explanations.iter().position(|one| one.standing == Standing::Next);
+                if let Some(next) = next {
+                    match self.telling(best, &explanations[next]) {
+                        Some(Telltale::Near) => diagnosis.explanations[next].standing = Standing::Near,
+                        Some(Telltale::At(telling)) => diagnosis.telling = Some(Telling { next, ..telling }),
+                        None => {}
+                    }
+                }
+            }
+        }
+        let failing = self.failing.len();
+        SceneDiagnosis { failing, explanations, diagnosis }
     }
 
     /// The mistakes that change something, the nearest first.
@@ -309,26 +328,8 @@ impl<'a> Trial<'a> {
         real(contradicted) * real(far.len()) / real(tried.len().max(1))
     }
 
-    /// The best explanation, those that explain as much, and the pixel that tells it best from the next.
-    fn named(&self, found: &[SceneExplanation]) -> String {
-        let best = &found[0];
-        let (there, all) = (self.failing_there.len(), self.failing.len());
-        let of = if there == all { String::new() } else { format!(" looked at, of {},", thousands(all as u64)) };
-        let [explained, there] = [best.explained, there].map(|count| thousands(count as u64));
-        let mut told =
-            format!("{explained} of {there} failing components of pixels{of} are explained by: {}", says(best));
-        let is_equal = |other: &&SceneExplanation| other.explained == best.explained && other.drawn == best.drawn;
-        for other in found[1..].iter().filter(is_equal).take(MOST_EQUAL) {
-            let _ = write!(told, "; or, which draws the same: {}", says(other));
-        }
-        if let Some(next) = found[1..].iter().find(|other| !is_equal(other)) {
-            told.push_str(&self.telling(best, next).unwrap_or_default());
-        }
-        told
-    }
-
     /// The failing pixel at which two explanations draw what is least alike.
-    fn telling(&self, best: &SceneExplanation, next: &SceneExplanation) -> Option<String> {
+    fn telling(&self, best: &SceneExplanation, next: &SceneExplanation) -> Option<Telltale> {
         let apart = |&(place, k): &(usize, usize)| (best.drawn[place][k] - next.drawn[place][k]).abs();
         let is_best = |&&(place, k): &&(usize, usize)| {
             let value = self.image.pixels[self.looked_at[place]][k];
@@ -337,19 +338,27 @@ impl<'a> Trial<'a> {
         let at = self.failing_there.iter().filter(is_best).max_by(|a, b| apart(a).total_cmp(&apart(b)))?;
         let (number, width) = (self.looked_at[at.0], self.image.width);
         let shown = |value: f64| if value.fract() == 0.0 { format!("{value}") } else { format!("{value:.4}") };
-        let [value, here, there] =
-            [self.image.pixels[number][at.1], best.drawn[at.0][at.1], next.drawn[at.0][at.1]].map(shown);
-        let says = says(next);
+        let [here, there] = [best.drawn[at.0][at.1], next.drawn[at.0][at.1]].map(shown);
         if here == there {
-            return Some(format!("; or, which draws nearly the same: {says}"));
+            return Some(Telltale::Near);
         }
-        Some(format!(
-            "; the next best is: {says}, but {} of pixel {},{} is {value}, where the first draws {here} and the second {there}",
-            NAMES[at.1],
-            number % width,
-            number / width
-        ))
+        let [value, first, next] =
+            [self.image.pixels[number][at.1], best.drawn[at.0][at.1], next.drawn[at.0][at.1]].map(Number);
+        let shown = ToldApart { component: NAMES[at.1].into(), value, first, next };
+        Some(Telltale::At(Telling {
+            case: format!("{},{}", number % width, number / width),
+            next: 0,
+            shown: Some(shown),
+        }))
     }
+}
+
+/// What tells two explanations apart.
+enum Telltale {
+    /// Nothing that is seen in the digits of a value that are shown.
+    Near,
+    /// A pixel.
+    At(Telling),
 }
 
 /// The components of a pixel.
@@ -365,11 +374,20 @@ fn pairs(near: &[Near]) -> Vec<Vec<&'static SceneFault>> {
     first.iter().enumerate().flat_map(with_others).collect()
 }
 
-fn says(explanation: &SceneExplanation) -> String {
-    let scaled = explanation.scaled.map(Scaled::says);
-    let faults = explanation.faults.iter().map(|fault| fault.says.to_owned());
-    let names: Vec<&str> = explanation.faults.iter().map(|fault| fault.name).collect();
-    scaled.into_iter().chain(faults).collect::<Vec<_>>().join(", and ") + &called(&names)
+impl SceneExplanation {
+    /// As a report has it.
+    fn told(&self, standing: Standing) -> Explanation {
+        let scaled = self.scaled.map(Scaled::says);
+        let faults = self.faults.iter().map(|fault| fault.says.to_owned());
+        Explanation {
+            says: scaled.into_iter().chain(faults).collect::<Vec<_>>().join(", and "),
+            mistakes: self.faults.iter().map(|fault| Word::from(fault.name)).collect(),
+            parameter: self.scaled.map(Scaled::told),
+            explained: self.explained as u64,
+            open: 0,
+            standing,
+        }
+    }
 }
 
 /// The nearest first.

@@ -2,6 +2,7 @@
 
 use super::super::draw_at;
 use super::{Made, Near, Trial, nearest_first, spread};
+use lightmeter_document::report::WrongParameter;
 use lightmeter_scene::frame::{FogForm, Frame, Place};
 use rayon::prelude::*;
 
@@ -40,6 +41,13 @@ impl Scaled {
         let mut frame = frame.clone();
         (self.parameter.scale)(&mut frame, self.factor);
         frame
+    }
+
+    /// As a report has it.
+    pub(super) fn told(self) -> WrongParameter {
+        let says = self.parameter.says;
+        let name = says.strip_suffix(" is").or(says.strip_suffix(" are")).unwrap_or(says);
+        WrongParameter { names: vec![name.to_owned()], factor: self.factor.into() }
     }
 
     /// It in words.

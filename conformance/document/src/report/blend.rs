@@ -1,36 +1,29 @@
 //! What the JSON of `run` has of blend units: tiers and stores, each blend state, NaN and infinity.
 
-use crate::stores::StoreCounts;
+use crate::count::counters;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Values on a target of 8 bits by how near they come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Tiers {
-    /// The formula gives a whole step, and it came out.
-    pub exact: u64,
-    /// The nearest step.
-    pub nearest: u64,
-    /// The other neighbour.
-    pub neighbour: u64,
-    /// Farther, but within the format's bound.
-    pub bound: u64,
-    /// Outside.
-    pub outside: u64,
+counters! {
+    /// Values on a target of 8 bits by how near they come.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Tiers {
+        /// The formula gives a whole step, and it came out.
+        pub exact: u64,
+        /// The nearest step.
+        pub nearest: u64,
+        /// The other neighbour.
+        pub neighbour: u64,
+        /// Farther, but within the format's bound.
+        pub bound: u64,
+        /// Outside.
+        pub outside: u64,
+    }
 }
 
 impl Tiers {
-    /// The sum.
-    pub fn add(&mut self, other: &Self) {
-        self.exact += other.exact;
-        self.nearest += other.nearest;
-        self.neighbour += other.neighbour;
-        self.bound += other.bound;
-        self.outside += other.outside;
-    }
-
     /// Each with its name.
     #[must_use]
     pub const fn named(&self) -> [(&'static str, u64); 5] {
@@ -55,16 +48,6 @@ pub struct StoreUse {
     pub of: u64,
     /// Their mean error with its sign, in steps.
     pub bias: f64,
-}
-
-/// What a shard's values on a target of 8 bits say of how they are stored, by component, and how many blend states they are of: too few of
-/// them by themselves may tell nothing.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub struct StoresOfShard {
-    /// By component.
-    pub components: [StoreCounts; 4],
-    /// States by route.
-    pub states: usize,
 }
 
 /// A blend state by one route on a target.

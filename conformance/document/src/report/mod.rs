@@ -1,14 +1,26 @@
-//! The JSON of `run`.
+//! What was judged and what came of it: the JSON of `run`, `gate` and `merge`.
 
 mod blend;
+mod diagnosis;
+mod problem;
+mod sample;
 mod shader;
 mod stability;
 
-pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, StoresOfShard, Tiers};
-pub use shader::{BoundVariable, FoundBy, JudgedAs, MistakePlace, ShaderUse};
+pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, Tiers};
+pub use diagnosis::{
+    Counted, Diagnosis, Explanation, FailingOutput, OtherFormulas, Standing, Telling, ToldApart, WrongParameter,
+};
+pub use problem::{Problem, ProblemKind, Sentence};
+pub use sample::{GroupSample, SampledRows, SampledStores, StoresOfState};
+pub use shader::{BoundVariable, FoundBy, HeldInput, JudgedAs, MistakePlace, ShaderUse};
 pub use stability::{Cost, Examined, StableForm};
 
-use crate::by_case::{CaseCounts, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererUse, SourcePlace};
+use crate::by_case::{
+    CaseCounts, CaseTotals, ComparedBy, Coverage, FailedAnswer, KnownFailure, RendererIdentity, RendererUse,
+    SourcePlace, is_zero,
+};
+use crate::count::counters;
 use crate::explained::Explained;
 use crate::hash::hash;
 use crate::{Number, Word};
@@ -18,7 +30,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
 /// The schema of [`Report`].
-pub const SCHEMA: &str = "lightmeter.run/1";
+pub const SCHEMA: &str = "lightmeter.report/2";
 
 /// How a subject is named in reports.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -34,41 +46,40 @@ pub struct Identity {
     pub driver: String,
 }
 
-/// Counts of verdicts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Totals {
-    /// Cases, each counted once for an adapter and stage.
-    pub cases: u64,
-    /// Scalar outputs judged.
-    pub verdicts: u64,
-    /// Inside the interval.
-    pub passed: u64,
-    /// Outside.
-    pub failed: u64,
-    /// Outside, as a named deviation says.
-    pub expected_failures: u64,
-    /// Inside at the witness of a named deviation, which is no longer needed.
-    pub unexpected_passes: u64,
-    /// Cases that the adapter cannot evaluate.
-    pub skipped: u64,
-    /// Where the rules permit anything.
-    pub indeterminate: u64,
-    /// Groups that fail as a whole, although each verdict is legal.
-    pub failed_groups: u64,
+impl From<&RendererIdentity> for Identity {
+    /// A renderer, as of an adapter.
+    fn from(renderer: &RendererIdentity) -> Self {
+        Self {
+            name: renderer.name.clone(),
+            device: renderer.device.clone().unwrap_or_else(|| renderer.name.clone()),
+            backend: "renderer".into(),
+            driver: renderer.driver.clone().unwrap_or_else(|| renderer.version.clone()),
+        }
+    }
 }
 
-impl Totals {
-    /// The sum.
-    pub fn add(&mut self, other: &Self) {
-        self.cases = self.cases.saturating_add(other.cases);
-        self.verdicts = self.verdicts.saturating_add(other.verdicts);
-        self.passed = self.passed.saturating_add(other.passed);
-        self.failed = self.failed.saturating_add(other.failed);
-        self.expected_failures = self.expected_failures.saturating_add(other.expected_failures);
-        self.unexpected_passes = self.unexpected_passes.saturating_add(other.unexpected_passes);
-        self.skipped = self.skipped.saturating_add(other.skipped);
-        self.indeterminate = self.indeterminate.saturating_add(other.indeterminate);
-        self.failed_groups = self.failed_groups.saturating_add(other.failed_groups);
+counters! {
+    /// Counts of verdicts.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+    pub struct Totals {
+        /// Cases, each counted once for an adapter and stage.
+        pub cases: u64,
+        /// Scalar outputs judged.
+        pub verdicts: u64,
+        /// Inside the interval.
+        pub passed: u64,
+        /// Outside.
+        pub failed: u64,
+        /// Outside, as a named deviation says.
+        pub expected_failures: u64,
+        /// Inside at the witness of a named deviation, which is no longer needed.
+        pub unexpected_passes: u64,
+        /// Cases that the adapter cannot evaluate.
+        pub skipped: u64,
+        /// Where the rules permit anything.
+        pub indeterminate: u64,
+        /// Groups that fail as a whole, although each verdict is legal.
+        pub failed_groups: u64,
     }
 }
 
@@ -90,9 +101,6 @@ pub struct Group {
     /// How values are stored, on a target of 8 bits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub store: Option<StoreUse>,
-    /// What a shard's values say of how they are stored, for the whole.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stores: Option<StoresOfShard>,
     /// The counts.
     #[serde(flatten)]
     pub totals: Totals,
@@ -114,21 +122,15 @@ pub struct Group {
     /// Why the group is skipped.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip_reason: Option<Word>,
-    /// The mistake that explains what failed.
+    /// What explains what failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub explanation: Option<String>,
-    /// What the renderer did wrong, in words, without how many failures it explains.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cause: Option<String>,
-    /// The names of the mistakes that explain what failed together.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub mistakes: Vec<String>,
+    pub diagnosis: Option<Diagnosis>,
     /// Why the group fails as a whole.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub problem: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub problems: Vec<Problem>,
     /// Why it fails as a whole, as a known failure says that it does.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub expected_problem: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub expected_problems: Vec<Problem>,
     /// Of a scene's image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<ImageUse>,
@@ -138,6 +140,9 @@ pub struct Group {
     /// Where the renderer's code of it stands, where its hello says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<SourcePlace>,
+    /// What a shard keeps for the diagnosis of the whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample: Option<GroupSample>,
 }
 
 /// What was answered to the case of the greatest margin.
@@ -171,9 +176,15 @@ pub struct ImageUse {
     /// To which side of the reference all pixels lie together, where each alone is legal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bias: Option<ImageBias>,
+    /// Pixels that are wrong.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub wrong: u64,
     /// The first intermediate result in which a wrong image departs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub departs_in: Option<Word>,
+    pub departs_in: Option<Departure>,
+    /// The command that shows the worst pixel of a wrong image.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub show: Option<String>,
     /// Reference, result and error map of a wrong image.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
@@ -190,6 +201,23 @@ impl ImageUse {
     #[must_use]
     pub fn is_its_file(&self, place: usize, bytes: &[u8]) -> Option<bool> {
         self.hashes.get(place).map(|own| *own == hash(bytes))
+    }
+}
+
+/// The first intermediate result that is not legal.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Departure {
+    /// Its name, `cutout` where only the fragments that are left out differ, or `blend` or `store` where all of them are legal.
+    pub stage: Word,
+    /// Pixels that depart there.
+    pub pixels: u64,
+    /// Of how many that were looked at.
+    pub of: u64,
+}
+
+impl Display for Departure {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "first departs in: {} ({} of {} pixels looked at)", self.stage, self.pixels, self.of)
     }
 }
 
@@ -277,6 +305,63 @@ impl Group {
         id.strip_prefix(&self.id).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
     }
 
+    /// What the first explanation of its failures says, with its mistakes' names.
+    #[must_use]
+    pub fn cause(&self) -> Option<String> {
+        self.diagnosis.as_ref().and_then(Diagnosis::cause)
+    }
+
+    /// The mistakes that explain its failures together.
+    #[must_use]
+    pub fn mistakes(&self) -> &[Word] {
+        self.diagnosis.as_ref().map_or(&[], Diagnosis::mistakes)
+    }
+
+    /// What is known of why it fails, each in a sentence: what explains its failures, and what is wrong with the whole.
+    pub fn reasons(&self) -> impl Iterator<Item = String> + '_ {
+        self.diagnosis.iter().map(ToString::to_string).chain(self.problem())
+    }
+
+    /// What is wrong with the whole as a known failure says, in a sentence.
+    #[must_use]
+    pub fn expected_problem(&self) -> Option<String> {
+        told_together(&self.expected_problems)
+    }
+
+    /// What is wrong with the whole, in a sentence.
+    #[must_use]
+    pub fn problem(&self) -> Option<String> {
+        told_together(&self.problems)
+    }
+
+    /// Whether something fails that is not expected to, or was not answered.
+    #[must_use]
+    pub fn is_failed(&self) -> bool {
+        self.totals.failed > 0 || !self.problems.is_empty() || self.by_case.as_ref().is_some_and(CaseCounts::is_failed)
+    }
+
+    /// The format that was blended on; of a scene, which is drawn on one as well, none.
+    #[must_use]
+    pub fn blended_on(&self) -> Option<&Word> {
+        self.target.as_ref().filter(|_| !self.id.starts_with("scene/"))
+    }
+
+    /// The cases of a renderer's group: how many of which fate. `None` of a group whose verdicts are counted.
+    #[must_use]
+    pub fn asked(&self) -> Option<&CaseCounts> {
+        self.by_case.as_ref().filter(|_| self.stage == "answer")
+    }
+
+    /// Its name: of a renderer's, the id and the format that was blended on.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match (self.asked(), self.blended_on()) {
+            (None, _) => format!("{} on {}, {}", self.id, self.adapter, self.place()),
+            (Some(_), Some(target)) => format!("{} on {target}", self.id),
+            (Some(_), None) => self.id.clone(),
+        }
+    }
+
     /// A group of nothing yet.
     #[must_use]
     pub fn new(id: String, adapter: String, stage: impl Into<Word>) -> Self {
@@ -287,7 +372,6 @@ impl Group {
             target: None,
             tiers: None,
             store: None,
-            stores: None,
             totals: Totals::default(),
             error_ulp_max: Number(0.0),
             margin_max: Number(0.0),
@@ -296,14 +380,13 @@ impl Group {
             worst: None,
             worst_answer: None,
             skip_reason: None,
-            explanation: None,
-            cause: None,
-            mistakes: vec![],
-            problem: None,
-            expected_problem: None,
+            diagnosis: None,
+            problems: vec![],
+            expected_problems: vec![],
             image: None,
             by_case: None,
             source: None,
+            sample: None,
         }
     }
 
@@ -312,6 +395,12 @@ impl Group {
     pub fn place(&self) -> String {
         self.target.as_ref().map_or(self.stage.to_string(), |target| format!("{} on {target}", self.stage))
     }
+}
+
+/// Problems in a sentence.
+fn told_together(problems: &[Problem]) -> Option<String> {
+    let says: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    (!says.is_empty()).then(|| says.join("; "))
 }
 
 /// What drawing a scene takes by composed shaders, and by the one with all effects, in turns.
@@ -350,6 +439,7 @@ pub struct Failure {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub units: BTreeMap<String, Word>,
     /// Their bits.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
     pub inputs_hex: serde_json::Map<String, serde_json::Value>,
     /// The f64 reference.
     pub reference: Number,
@@ -374,6 +464,12 @@ pub struct Failure {
 }
 
 impl Failure {
+    /// The format that was blended on; of a scene, which is drawn on one as well, none.
+    #[must_use]
+    pub fn blended_on(&self) -> Option<&Word> {
+        self.target.as_ref().filter(|_| !self.id.starts_with("scene/"))
+    }
+
     /// A failure without inputs and numbers.
     #[must_use]
     pub fn new(id: String, adapter: String, stage: impl Into<Word>) -> Self {
@@ -495,10 +591,10 @@ impl std::fmt::Display for ConfigUse {
     }
 }
 
-/// The JSON of `run`.
+/// What was judged and what came of it, whoever answered.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
-    /// `lightmeter.run/1`.
+    /// `lightmeter.report/2`.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
     /// The command, but for where its result goes.
@@ -525,6 +621,9 @@ pub struct Report {
     pub required: Option<Number>,
     /// The sum over the groups.
     pub totals: Totals,
+    /// The same of cases, where they are counted: of a renderer always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_case: Option<CaseTotals>,
     /// States judged under another's name: how many of the selected.
     pub aliases: u64,
     /// How blend states reached the blend unit: states by route.
@@ -560,6 +659,9 @@ pub struct Report {
     /// What was under way when a device failed, which ended the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interrupted: Option<Interrupted>,
+    /// What there is to know of the result besides.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<Sentence>,
     /// Failures, the first of each group.
     pub failures: Vec<Failure>,
     /// Who answered, where that is another renderer.
@@ -600,11 +702,6 @@ pub struct Report {
     pub shaders_hash: Option<String>,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
-const fn is_zero(count: &u64) -> bool {
-    *count == 0
-}
-
 impl Report {
     /// A report of nothing yet.
     #[must_use]
@@ -621,6 +718,7 @@ impl Report {
             adapters,
             required: None,
             totals: Totals::default(),
+            by_case: None,
             aliases: 0,
             routes: serde_json::Map::new(),
             timing: Timing::default(),
@@ -634,6 +732,7 @@ impl Report {
             stability: vec![],
             stable_costs: vec![],
             interrupted: None,
+            notes: vec![],
             failures: vec![],
             renderer: None,
             unstable: 0,
@@ -664,25 +763,65 @@ impl Report {
         }
     }
 
+    /// Sums the groups up.
+    pub fn sum_up(&mut self) {
+        self.totals = Totals::default();
+        self.groups.iter().for_each(|group| self.totals.add(&group.totals));
+        self.by_case = self.groups.iter().any(|group| group.by_case.is_some()).then(|| self.cases());
+    }
+
+    /// The cases of all groups, where they are counted: how many of which fate.
+    #[must_use]
+    pub fn cases(&self) -> CaseTotals {
+        let mut all = CaseTotals::default();
+        self.groups.iter().filter_map(|group| group.by_case.as_ref()).for_each(|counts| all.add(&counts.totals));
+        all
+    }
+
     /// How many of the cases that were chosen were judged.
     #[must_use]
-    pub const fn coverage(&self) -> Coverage {
-        let Totals { cases, skipped, .. } = self.totals;
-        Coverage { chosen: cases, judged: cases.saturating_sub(skipped), excluded: skipped }
+    pub fn coverage(&self) -> Coverage {
+        if self.renderer.is_none() {
+            let Totals { cases, skipped, .. } = self.totals;
+            return Coverage { chosen: cases, judged: cases.saturating_sub(skipped), excluded: skipped };
+        }
+        let CaseTotals { asked, not_asked, skipped, missing, .. } = self.cases();
+        Coverage {
+            chosen: asked.saturating_add(not_asked),
+            judged: asked.saturating_sub(skipped).saturating_sub(missing),
+            excluded: not_asked.saturating_add(skipped),
+        }
+    }
+
+    /// Whether a renderer that was asked broke off, or wrote what is no answer.
+    #[must_use]
+    pub fn is_broken(&self) -> bool {
+        self.renderer.as_ref().is_some_and(RendererUse::is_broken)
+    }
+
+    /// Whether anything was judged: a verdict that is decided, or, where nothing else was asked for, a witness of a named deviation.
+    #[must_use]
+    pub fn has_judged(&self) -> bool {
+        let Totals { cases, verdicts, indeterminate, .. } = self.totals;
+        verdicts > indeterminate || (cases == 0 && !self.deviations.is_empty())
+    }
+
+    /// Whether anything fails that is not expected to, or passes that is.
+    #[must_use]
+    pub fn is_failed(&self) -> bool {
+        self.totals.failed > 0
+            || self.totals.unexpected_passes > 0
+            || self.totals.failed_groups > 0
+            || self.unstable > 0
+            || !self.regressions.is_empty()
+            || self.passing_unexpectedly().next().is_some()
+            || self.groups.iter().any(Group::is_failed)
     }
 
     /// Whether all went as expected.
     #[must_use]
     pub fn is_success(&self) -> bool {
-        let is_failed = |group: &Group| group.by_case.as_ref().is_some_and(CaseCounts::is_failed);
-        self.interrupted.is_none()
-            && self.totals.failed == 0
-            && self.totals.unexpected_passes == 0
-            && self.totals.failed_groups == 0
-            && self.unstable == 0
-            && self.regressions.is_empty()
-            && self.passing_unexpectedly().next().is_none()
-            && !self.groups.iter().any(is_failed)
+        self.interrupted.is_none() && !self.is_failed() && !self.is_broken()
     }
 }
 

@@ -44,9 +44,26 @@ pub struct JudgedAs {
     /// The formula's inputs that no variable stands for, unless a constant does.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unbound: Vec<String>,
+    /// Inputs that are constants there, or the same as another input.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held: Vec<HeldInput>,
     /// Where the mistakes that explain its failures are made.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mistakes: Vec<MistakePlace>,
+}
+
+/// An input of a formula that a shader does not take.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeldInput {
+    /// Its name.
+    pub name: String,
+    /// The bits of the numbers that it is in every case; none where it is another input.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bits: Vec<u32>,
+    /// The input that it is the same as.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub same_as: Option<String>,
 }
 
 /// What a variable of a shader was set to.

@@ -1,0 +1,198 @@
+//! What explains the failures of the whole, and what is wrong with its groups: worked out once more, from the samples that the shards kept, by
+//! the same functions as in a run.
+
+use super::{GroupKey, NoWhole, key};
+use crate::blend_unit::standing::{diagnosed, no_pixels, unpacked_pixels};
+use crate::diagnosed::GroupRows;
+use crate::options::{Adapted, Constant};
+use crate::stability;
+use lightmeter_arithmetic::Profile;
+use lightmeter_catalogue::cases::Stage;
+use lightmeter_catalogue::cases::blend::{Samples, separate_of};
+use lightmeter_catalogue::select::{Member, alias_members, catalogue_of};
+use lightmeter_document::report::{
+    Diagnosis, Group, GroupSample, JudgedAs, Problem, ProblemKind, Report, SampledStores, Sentence,
+};
+use lightmeter_judge::blend_unit::store::{problems, store_of};
+use lightmeter_judge::devices::{Known, known};
+use lightmeter_judge::diagnose::Diagnose;
+use lightmeter_judge::formula::RowStanding;
+use lightmeter_judge::packed::{BadSample, unpacked};
+use lightmeter_judge::tally::problem;
+use lightmeter_scene::target::TargetFormat;
+use std::collections::{BTreeSet, HashMap};
+
+/// What each shard kept of each group that it judged.
+#[derive(Default)]
+pub(super) struct Kept(HashMap<GroupKey, Vec<Option<GroupSample>>>);
+
+/// What is the same for all groups.
+struct Context<'a> {
+    catalogue: Vec<Member>,
+    profile: &'static Profile,
+    seed: u64,
+    diagnose: &'a dyn Diagnose,
+}
+
+impl Kept {
+    /// Takes the samples of a shard.
+    pub(super) fn take(&mut self, part: &mut Report) {
+        for group in &mut part.groups {
+            self.0.entry(key(group)).or_default().push(group.sample.take());
+        }
+    }
+
+    /// Works out what explains the failures of each group, and what is wrong with it as a whole.
+    pub(super) fn diagnose(
+        &self,
+        whole: &mut Report,
+        catalogue: Vec<Member>,
+        diagnose: &dyn Diagnose,
+    ) -> Result<(), NoWhole> {
+        let Some(profile) = Profile::by_name(&whole.profile) else {
+            return Err(NoWhole(format!("there is no profile `{}`", whole.profile)));
+        };
+        let context = Context { catalogue, profile, seed: whole.seed, diagnose };
+        let mut groups = std::mem::take(&mut whole.groups);
+        let mut left_out = 0;
+        for group in &mut groups {
+            let kept = self.0.get(&key(group)).map_or(&[][..], Vec::as_slice);
+            let samples: Vec<&GroupSample> = kept.iter().flatten().collect();
+            // Scenes and tables of special values are judged whole, and keep none.
+            if samples.len() == kept.len() && !samples.is_empty() {
+                let told = context.group(group, &samples, whole);
+                told.map_err(|error| NoWhole(format!("{}: {error}", group.id)))?;
+            } else if kept.len() > 1 && !group.id.starts_with("special/") {
+                left_out += 1;
+                group.diagnosis = None;
+                group.problems.clear();
+            }
+            group.problems.retain(|problem| problem.kind != ProblemKind::Stability);
+            group.problems.extend(stability::problem(&whole.stability, &group.id, &group.adapter, &group.stage));
+        }
+        whole.groups = groups;
+        if left_out > 0 {
+            whole.notes.push(Sentence::from(format!(
+                "the shards carry no samples (`--no-samples`): what explains failures, and what is wrong with all values of a group together, is \
+                 not told of {left_out} groups"
+            )));
+        }
+        Ok(())
+    }
+}
+
+impl Context<'_> {
+    fn group(&self, group: &mut Group, samples: &[&GroupSample], whole: &Report) -> Result<(), BadSample> {
+        let named: BTreeSet<&String> = samples.iter().flat_map(|sample| &sample.formulas).collect();
+        let members: Vec<&Member> = self.catalogue.iter().filter(|member| named.contains(&member.spec.id)).collect();
+        let (Some(first), Some(stage)) =
+            (members.first(), Stage::ALL.into_iter().find(|stage| group.stage == stage.name()))
+        else {
+            return Ok(());
+        };
+        let random =
+            samples.iter().fold((0, 0), |(all, open), sample| (all + sample.random[0], open + sample.random[1]));
+        let undecided = problem(random, group.totals.verdicts, group.totals.indeterminate);
+        let known = known_of(group, whole);
+        if let Some(target) = group.blended_on().and_then(|name| TargetFormat::by_name(name)) {
+            let mut pixels = no_pixels();
+            for sample in samples {
+                pixels.add(&unpacked_pixels(sample, &members, no_pixels())?);
+            }
+            let stores = stores(samples);
+            let special = whole.special.iter().filter(|special| {
+                group.has_case(&special.id) && special.adapter == group.adapter && special.target == target.name()
+            });
+            group.problems = problems(special, &stores, &known, target);
+            if group.problems.is_empty() {
+                group.problems.extend(undecided);
+            }
+            group.store = store_of(&stores, &known, target).filter(|_| target.is_unorm() && group.totals.cases > 0);
+            group.diagnosis = diagnosed(&pixels, &members, target, self.profile, self.seed);
+            return Ok(());
+        }
+        let mut rows = RowStanding::new(first.spec.output_len());
+        for sample in samples {
+            let place = |id: &String| members.iter().position(|member| member.spec.id == *id).unwrap_or(usize::MAX);
+            let places: Vec<usize> = sample.formulas.iter().map(place).collect();
+            let empty = RowStanding::new(first.spec.output_len());
+            rows.wrong.add(&unpacked(&sample.wrong, &places, &members, empty.wrong)?);
+            rows.right.add(&unpacked(&sample.right, &places, &members, empty.right)?);
+            for (place, count) in places.iter().zip(&sample.failing).filter(|(_, count)| **count > 0) {
+                *rows.failing.entry(*place).or_default() += count;
+            }
+        }
+        rows.failing.retain(|place, _| *place < members.len());
+        let RowStanding { failing, wrong, right, .. } = &rows;
+        let told = GroupRows { members: &members, stage, failing, wrong, right }.told(
+            Some(self.diagnose),
+            &known.granted(self.profile),
+            self.seed,
+        );
+        let unjudged = group.by_case.as_ref().map_or(0, |counts| counts.totals.unjudged);
+        group.diagnosis = told.diagnosis.map(|found| Diagnosis { unjudged, ..found });
+        group.problems = undecided.or(told.systematic).into_iter().collect::<Vec<Problem>>();
+        Ok(())
+    }
+}
+
+/// What is known of the subject of a group.
+fn known_of(group: &Group, whole: &Report) -> Known {
+    let subject = whole.adapters.iter().find(|adapter| adapter.name == group.adapter);
+    match subject.filter(|subject| matches!(&*subject.backend, "vulkan" | "gl")) {
+        Some(subject) => known(&subject.device, &subject.driver),
+        None => Known::default(),
+    }
+}
+
+/// What the values of all shards say of how they are stored.
+fn stores(samples: &[&GroupSample]) -> SampledStores {
+    let mut all = SampledStores::default();
+    for stores in samples.iter().filter_map(|sample| sample.stores.as_ref()) {
+        all.components.iter_mut().zip(&stores.components).for_each(|(counts, more)| counts.add(more));
+        all.model = [all.model[0] + stores.model[0], all.model[1] + stores.model[1]];
+        all.departure = all.departure.take().or_else(|| stores.departure.clone());
+        for state in &stores.states {
+            match all.states.iter_mut().find(|known| (&known.id, &known.route) == (&state.id, &state.route)) {
+                Some(known) => {
+                    known.components.iter_mut().zip(&state.components).for_each(|(counts, more)| counts.add(more));
+                }
+                None => all.states.push(state.clone()),
+            }
+        }
+    }
+    all
+}
+
+/// The formulas as they were judged: with those of sampled blend states, of a renderer with aliases, of a shader with what it does not take.
+pub(super) fn catalogue(whole: &Report) -> Vec<Member> {
+    let by = whole.compared_by.clone().unwrap_or_default();
+    let named = by.choice.filter.iter().filter_map(|glob| separate_of(glob)).collect();
+    let samples = Samples { seed: whole.seed, count: by.separate.unwrap_or_default(), named };
+    let mut catalogue = catalogue_of(&samples);
+    if whole.renderer.is_some() {
+        catalogue.extend(alias_members());
+    }
+    let judged: Vec<Adapted> = whole.shader.iter().flat_map(|shader| &shader.formulas).map(adapted).collect();
+    let applied = |member: Member| match judged.iter().find(|adapted| adapted.id == member.spec.id) {
+        Some(adapted) => adapted.applied(member),
+        None => member,
+    };
+    catalogue.into_iter().map(applied).collect()
+}
+
+fn adapted(judged: &JudgedAs) -> Adapted {
+    let constants = judged.held.iter().map(|held| {
+        let constant = match &held.same_as {
+            Some(other) => Constant::SameAs(other.clone()),
+            None => Constant::Numbers(held.bits.iter().map(|&bits| f32::from_bits(bits)).collect()),
+        };
+        (held.name.clone(), constant)
+    });
+    Adapted {
+        id: judged.id.clone(),
+        missing: judged.not_given.clone(),
+        constants: constants.collect(),
+        ..Adapted::default()
+    }
+}

@@ -1,0 +1,130 @@
+//! Samples of rows as text, which a shard's report carries.
+
+use crate::sample::Sample;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_document::report::SampledRows;
+
+/// Why a text is no sample of a group's rows.
+#[derive(Debug, thiserror::Error)]
+#[error("its sample of cases is damaged: {0}")]
+pub struct BadSample(&'static str);
+
+/// Writes a sample.
+#[must_use]
+pub fn packed(sample: &Sample<(usize, CaseRef)>) -> SampledRows {
+    let mut bytes = vec![];
+    for ((member, case), values) in sample.rows() {
+        number(member as u64, &mut bytes);
+        let (kind, numbers): (u8, &[u64]) = match case {
+            CaseRef::Hard(place) => (0, &[place as u64]),
+            CaseRef::Near(place, k) => (1, &[place as u64, k]),
+            CaseRef::Boundary(k) => (2, &[k]),
+            CaseRef::Random(k) => (3, &[k]),
+        };
+        bytes.push(kind);
+        numbers.iter().for_each(|&one| number(one, &mut bytes));
+        values.iter().for_each(|value| bytes.extend(value.to_bits().to_le_bytes()));
+    }
+    SampledRows { of: sample.seen, rows: STANDARD.encode(bytes) }
+}
+
+/// Reads a sample into an empty one of the whole, where `places` has the place of each of its formulas, and `members` are the whole's.
+///
+/// # Errors
+/// Where it is damaged, or names a case that its formula does not have.
+pub fn unpacked(
+    rows: &SampledRows,
+    places: &[usize],
+    members: &[&Member],
+    mut sample: Sample<(usize, CaseRef)>,
+) -> Result<Sample<(usize, CaseRef)>, BadSample> {
+    let bytes = STANDARD.decode(&rows.rows).map_err(|_| BadSample("it is not base64"))?;
+    let mut rest = bytes.as_slice();
+    let outputs = members.first().map_or(1, |member| member.spec.output_len()).max(1);
+    while !rest.is_empty() {
+        let member = usize::try_from(read(&mut rest)?).ok().and_then(|place| places.get(place).copied());
+        let member = member.ok_or(BadSample("a row is of a formula that the group does not have"))?;
+        let (kind, after) = rest.split_first().ok_or(BadSample("it ends within a row"))?;
+        rest = after;
+        let mut place = || usize::try_from(read(&mut rest)?).map_err(|_| BadSample("a case's number is too large"));
+        let case = match kind {
+            0 => CaseRef::Hard(place()?),
+            1 => CaseRef::Near(place()?, read(&mut rest)?),
+            2 => CaseRef::Boundary(read(&mut rest)?),
+            3 => CaseRef::Random(read(&mut rest)?),
+            _ => return Err(BadSample("a row is of no kind that there is")),
+        };
+        let of = members.get(member).ok_or(BadSample("a row is of a formula that the group does not have"))?;
+        if !of.has(case) {
+            return Err(BadSample("a row is of a case that its formula does not have"));
+        }
+        let (words, after) = rest.split_at_checked(4 * outputs).ok_or(BadSample("it ends within a row"))?;
+        rest = after;
+        let words = words.as_chunks::<4>().0.iter().map(|&word| f32::from_bits(u32::from_le_bytes(word)));
+        sample.push((member, case), words);
+    }
+    sample.seen = rows.of;
+    Ok(sample)
+}
+
+/// Writes a number as LEB128.
+fn number(mut number: u64, out: &mut Vec<u8>) {
+    while number >= 0x80 {
+        out.push((number & 0x7f) as u8 | 0x80);
+        number >>= 7;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "seven bits")]
+    out.push(number as u8);
+}
+
+fn read(rest: &mut &[u8]) -> Result<u64, BadSample> {
+    let mut number = 0;
+    for shift in (0..64).step_by(7) {
+        let (&byte, after) = rest.split_first().ok_or(BadSample("it ends within a number"))?;
+        *rest = after;
+        number |= u64::from(byte & 0x7f) << shift;
+        if byte < 0x80 {
+            return Ok(number);
+        }
+    }
+    Err(BadSample("a number is too large"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_catalogue::select::catalogue;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read(numbers in proptest::collection::vec((0..4_u8, any::<u64>(), any::<f32>()), 0..40)) {
+            let catalogue = catalogue();
+            let member = catalogue.iter().find(|member| member.spec.id == "fog/exp").expect("it is there");
+            let outputs = member.spec.output_len();
+            let hard = member.spec.hard.len() as u64;
+            let mut sample = Sample::new(outputs, 16);
+            for (kind, k, value) in numbers {
+                let place = usize::try_from(k % hard).expect("it is small");
+                let case = match kind {
+                    0 => CaseRef::Hard(place),
+                    1 => CaseRef::Near(place, k % member.near()),
+                    2 => CaseRef::Boundary(k % member.boundary().max(1)),
+                    _ => CaseRef::Random(k),
+                };
+                sample.push((0, case), std::iter::repeat_n(value, outputs));
+            }
+            let again = unpacked(&packed(&sample), &[0], &[member], Sample::new(outputs, 16));
+            prop_assert!(again.is_ok_and(|again| again == sample));
+        }
+
+        #[test]
+        fn any_text_is_read_or_refused(rows in "[A-Za-z0-9+/]{0,64}={0,2}") {
+            let catalogue = catalogue();
+            let member = &catalogue[0];
+            let _ = unpacked(&SampledRows { of: 1, rows }, &[0], &[member], Sample::new(member.spec.output_len(), 8));
+        }
+    }
+}
