@@ -146,7 +146,7 @@ fn what_a_cutout_leaves_out_is_no_wrong_position() {
             "json",
         ]);
         let group = &report["groups"][0];
-        assert_eq!(group["image"]["departs_in"], stage, "{group}");
+        assert_eq!(group["image"]["departs_in"]["stage"], stage, "{group}");
         assert!(group.to_string().contains(mistake), "{group}");
     }
 }

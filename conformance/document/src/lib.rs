@@ -60,7 +60,7 @@ pub enum ReadError {
     },
     /// It is of an earlier version.
     #[error(
-        "it is of an earlier version, `{found}`; expected {schema}, {what}: judge once more by the same command, which writes that"
+        "it is of an earlier version, `{found}`; expected {schema}, {what}: judge once more by the same command, with `--update-baseline` where it is a baseline"
     )]
     Earlier {
         /// The schema that it names.

@@ -148,12 +148,30 @@ fn are_of_one_run(parts: &[(PathBuf, Report)]) -> Result<(), NoWhole> {
             return no_whole(format!("{} is not finished: {}", path.display(), interrupted.message));
         }
     }
+    for (path, part) in parts {
+        if let Some(what) = edited(part) {
+            return no_whole(format!("{}: {what}: it was changed by hand", path.display()));
+        }
+    }
     match differences(parts) {
         None => Ok(()),
         Some(fields) => {
             no_whole(format!("the files are of different runs; expected the same in all of them:\n{fields}"))
         }
     }
+}
+
+/// What in a report does not fit the rest of it; `None` where nothing is amiss.
+fn edited(part: &Report) -> Option<String> {
+    let mut names = BTreeSet::new();
+    if let Some(twice) = part.groups.iter().find(|group| !names.insert(key(group))) {
+        return Some(format!("{} stands there twice", twice.name()));
+    }
+    let mut again = part.clone();
+    again.sum_up();
+    again.totals.unexpected_passes = part.totals.unexpected_passes;
+    (again.totals != part.totals || again.by_case != part.by_case)
+        .then(|| "its totals are not the sums of its groups' counts".into())
 }
 
 /// The order of reports, by the ids of groups, formulas, hard cases and scenes.

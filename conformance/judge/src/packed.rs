@@ -9,7 +9,7 @@ use lightmeter_document::report::SampledRows;
 /// Why a text is no sample of a group's rows.
 #[derive(Debug, thiserror::Error)]
 #[error("its sample of cases is damaged: {0}")]
-pub struct BadSample(&'static str);
+pub struct BadSample(pub &'static str);
 
 /// Writes a sample.
 #[must_use]
@@ -42,6 +42,7 @@ pub fn unpacked(
 ) -> Result<Sample<(usize, CaseRef)>, BadSample> {
     let bytes = STANDARD.decode(&rows.rows).map_err(|_| BadSample("it is not base64"))?;
     let mut rest = bytes.as_slice();
+    let (mut last, mut count) = (None, 0_u64);
     let outputs = members.first().map_or(1, |member| member.spec.output_len()).max(1);
     while !rest.is_empty() {
         let member = usize::try_from(read(&mut rest)?).ok().and_then(|place| places.get(place).copied());
@@ -62,8 +63,16 @@ pub fn unpacked(
         }
         let (words, after) = rest.split_at_checked(4 * outputs).ok_or(BadSample("it ends within a row"))?;
         rest = after;
+        // They are written in their order.
+        if last.replace((member, case)).is_some_and(|last| last >= (member, case)) {
+            return Err(BadSample("a row stands there twice, or out of its order"));
+        }
+        count += 1;
         let words = words.as_chunks::<4>().0.iter().map(|&word| f32::from_bits(u32::from_le_bytes(word)));
         sample.push((member, case), words);
+    }
+    if count > rows.of {
+        return Err(BadSample("it has more rows than it says that there are"));
     }
     sample.seen = rows.of;
     Ok(sample)

@@ -1,5 +1,6 @@
 //! What is wrong with a group as a whole, although each of its values may be legal.
 
+use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
@@ -11,6 +12,9 @@ pub struct Problem {
     pub kind: ProblemKind,
     /// In words.
     pub says: Sentence,
+    /// The way in which values are stored, where one is told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub store: Option<Word>,
 }
 
 /// Of what kind it is.
@@ -44,7 +48,7 @@ impl Problem {
     /// A problem of a kind, in words.
     #[must_use]
     pub fn new(kind: ProblemKind, says: impl Into<String>) -> Self {
-        Self { kind, says: Sentence(says.into()) }
+        Self { kind, says: Sentence(says.into()), store: None }
     }
 }
 

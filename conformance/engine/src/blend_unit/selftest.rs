@@ -9,7 +9,7 @@ use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::cases::blend::{Program, Samples, every_state};
 use lightmeter_catalogue::select::{Member, Random, Selected, catalogue_of};
 use lightmeter_document::event::{Silent, Stop};
-use lightmeter_document::report::{Group, Problem, ProblemKind, Report, StoreUse};
+use lightmeter_document::report::{Group, Problem, Report};
 use lightmeter_document::selftest::{UnitFinding, UnitRow};
 use lightmeter_judge::blend_unit::rules::{FAULTS, Rules, Store, UnitFault};
 use lightmeter_scene::blend::{Separate, State};
@@ -143,10 +143,8 @@ fn finding(fault: &UnitFault, groups: &[Group]) -> UnitFinding {
     let is_store = fault.rules.store != Store::Nearest;
     let says = format!("as if {}", fault.says);
     let is_named = |group: &Group| {
-        let is_stored = |store: &StoreUse| store.identified == fault.rules.store.name();
-        let is_of_store = |one: &Problem| matches!(one.kind, ProblemKind::Store | ProblemKind::StoreOfState);
-        let by_store =
-            is_store && group.problems.iter().any(is_of_store) && group.store.as_ref().is_some_and(is_stored);
+        let is_stored = |one: &Problem| one.store.as_deref() == Some(fault.rules.store.name());
+        let by_store = is_store && group.problems.iter().any(is_stored);
         by_store || group.diagnosis.iter().flat_map(|found| &found.explanations).any(|one| one.says == says)
     };
     let throughout = fault.rules.stores_wrong_throughout();

@@ -68,6 +68,7 @@ fn facts(report: &Report) -> Vec<(String, String)> {
     let mut add = |name: &str, value: Value| flatten(name, &value, &mut out);
     add("version", json!(report.version));
     add("profile", json!(report.profile));
+    add("seed", json!(report.seed));
     let by = report.compared_by.clone().map(|by| ComparedBy { shard: None, ..by });
     if let Value::Object(fields) = json!(by) {
         fields.iter().for_each(|(name, value)| add(name, value.clone()));

@@ -9,7 +9,7 @@ use crate::stability;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::cases::blend::{Samples, separate_of};
-use lightmeter_catalogue::select::{Member, alias_members, catalogue_of};
+use lightmeter_catalogue::select::{CaseRef, Member, alias_members, catalogue_of};
 use lightmeter_document::report::{
     Diagnosis, Group, GroupSample, JudgedAs, Problem, ProblemKind, Report, SampledStores, Sentence,
 };
@@ -18,6 +18,7 @@ use lightmeter_judge::devices::{Known, known};
 use lightmeter_judge::diagnose::Diagnose;
 use lightmeter_judge::formula::RowStanding;
 use lightmeter_judge::packed::{BadSample, unpacked};
+use lightmeter_judge::sample::Sample;
 use lightmeter_judge::tally::problem;
 use lightmeter_scene::target::TargetFormat;
 use std::collections::{BTreeSet, HashMap};
@@ -72,9 +73,10 @@ impl Kept {
         }
         whole.groups = groups;
         if left_out > 0 {
+            let of = if left_out == 1 { "1 group".into() } else { format!("{left_out} groups") };
             whole.notes.push(Sentence::from(format!(
-                "the shards carry no samples (`--no-samples`): what explains failures, and what is wrong with all values of a group together, is \
-                 not told of {left_out} groups"
+                "not all shards carry samples (`--no-samples`), so that of {of} nothing tells what explains the failures, or what is wrong with \
+                 all values together"
             )));
         }
         Ok(())
@@ -84,7 +86,12 @@ impl Kept {
 impl Context<'_> {
     fn group(&self, group: &mut Group, samples: &[&GroupSample], whole: &Report) -> Result<(), BadSample> {
         let named: BTreeSet<&String> = samples.iter().flat_map(|sample| &sample.formulas).collect();
-        let members: Vec<&Member> = self.catalogue.iter().filter(|member| named.contains(&member.spec.id)).collect();
+        let is_of_group = |member: &&Member| member.spec.group() == group.id || member.spec.id == group.id;
+        let is_named = |member: &&Member| named.contains(&member.spec.id);
+        let members: Vec<&Member> = self.catalogue.iter().filter(is_named).filter(is_of_group).collect();
+        if members.len() != named.len() {
+            return Err(BadSample("it names a formula that is none of the group's"));
+        }
         let (Some(first), Some(stage)) =
             (members.first(), Stage::ALL.into_iter().find(|stage| group.stage == stage.name()))
         else {
@@ -99,6 +106,7 @@ impl Context<'_> {
             for sample in samples {
                 pixels.add(&unpacked_pixels(sample, &members, no_pixels())?);
             }
+            once_each(&pixels)?;
             let stores = stores(samples);
             let special = whole.special.iter().filter(|special| {
                 group.has_case(&special.id) && special.adapter == group.adapter && special.target == target.name()
@@ -111,18 +119,7 @@ impl Context<'_> {
             group.diagnosis = diagnosed(&pixels, &members, target, self.profile, self.seed);
             return Ok(());
         }
-        let mut rows = RowStanding::new(first.spec.output_len());
-        for sample in samples {
-            let place = |id: &String| members.iter().position(|member| member.spec.id == *id).unwrap_or(usize::MAX);
-            let places: Vec<usize> = sample.formulas.iter().map(place).collect();
-            let empty = RowStanding::new(first.spec.output_len());
-            rows.wrong.add(&unpacked(&sample.wrong, &places, &members, empty.wrong)?);
-            rows.right.add(&unpacked(&sample.right, &places, &members, empty.right)?);
-            for (place, count) in places.iter().zip(&sample.failing).filter(|(_, count)| **count > 0) {
-                *rows.failing.entry(*place).or_default() += count;
-            }
-        }
-        rows.failing.retain(|place, _| *place < members.len());
+        let rows = joined(samples, &members, first.spec.output_len())?;
         let RowStanding { failing, wrong, right, .. } = &rows;
         let told = GroupRows { members: &members, stage, failing, wrong, right }.told(
             Some(self.diagnose),
@@ -133,6 +130,37 @@ impl Context<'_> {
         group.diagnosis = told.diagnosis.map(|found| Diagnosis { unjudged, ..found });
         group.problems = undecided.or(told.systematic).into_iter().collect::<Vec<Problem>>();
         Ok(())
+    }
+}
+
+/// The rows of all shards' samples, by the places of their formulas among the whole's.
+fn joined(samples: &[&GroupSample], members: &[&Member], outputs: usize) -> Result<RowStanding, BadSample> {
+    let mut rows = RowStanding::new(outputs);
+    for sample in samples {
+        let failing = sample.failing.iter().fold(0, |sum: u64, count| sum.saturating_add(*count));
+        if sample.failing.len() != sample.formulas.len() || failing != sample.wrong.of {
+            return Err(BadSample("its counts of failing cases do not add up"));
+        }
+        let place = |id: &String| members.iter().position(|member| member.spec.id == *id).unwrap_or(usize::MAX);
+        let places: Vec<usize> = sample.formulas.iter().map(place).collect();
+        let empty = RowStanding::new(outputs);
+        rows.wrong.add(&unpacked(&sample.wrong, &places, members, empty.wrong)?);
+        rows.right.add(&unpacked(&sample.right, &places, members, empty.right)?);
+        for (place, count) in places.iter().zip(&sample.failing).filter(|(_, count)| **count > 0) {
+            *rows.failing.entry(*place).or_default() += count;
+        }
+    }
+    once_each(&rows.wrong)?;
+    once_each(&rows.right)?;
+    Ok(rows)
+}
+
+/// Checks that no case is in the samples of two shards.
+fn once_each(sample: &Sample<(usize, CaseRef)>) -> Result<(), BadSample> {
+    let rows = sample.rows();
+    match rows.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+        true => Err(BadSample("a case is in the samples of two shards")),
+        false => Ok(()),
     }
 }
 

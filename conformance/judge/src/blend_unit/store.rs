@@ -15,7 +15,8 @@ use super::model::BlendUnitModel;
 use super::pixel::step_below;
 use super::rules::Store;
 use crate::devices::Known;
-use lightmeter_document::report::{Problem, ProblemKind, SampledStores, SpecialUse, StoreUse};
+use lightmeter_document::Word;
+use lightmeter_document::report::{Problem, ProblemKind, SampledStores, SpecialUse, StoreUse, StoresOfState};
 pub use lightmeter_document::sweep::StoreCounts;
 use lightmeter_scene::target::{Encoding, TargetFormat};
 
@@ -91,13 +92,21 @@ pub fn problems<'a>(
 /// What is wrong with how values are stored: of a component in all states, or of one in some.
 fn store_problem(stores: &SampledStores) -> Option<Problem> {
     if let Some(problem) = problem_of(&stores.components, stores.states.len()) {
-        return Some(Problem::new(ProblemKind::Store, problem));
+        let store = clear_store(&stores.components, stores.states.len());
+        return Some(Problem { store, ..Problem::new(ProblemKind::Store, problem) });
     }
-    let mut states = stores.states.iter().filter_map(|state| Some((&state.id, problem_of(&state.components, 1)?)));
-    let (id, problem) = states.next()?;
+    let mut states = stores.states.iter().filter_map(|state| Some((state, problem_of(&state.components, 1)?)));
+    let (StoresOfState { id, components, .. }, problem) = states.next()?;
     let others = states.count();
     let others = if others > 0 { format!(", and so in {others} other states") } else { String::new() };
-    Some(Problem::new(ProblemKind::StoreOfState, format!("in {id} {problem}{others}")))
+    let told = Problem::new(ProblemKind::StoreOfState, format!("in {id} {problem}{others}"));
+    Some(Problem { store: clear_store(components, 1), ..told })
+}
+
+/// The store of the first component that is stored wrongly, where it is clear.
+fn clear_store(components: &[StoreCounts; 4], states: usize) -> Option<Word> {
+    let (store, share) = components.iter().find(|counts| counts.problem(states).is_some())?.likeliest();
+    (store != Store::Nearest && share >= CLEAR).then(|| store.name().into())
 }
 
 /// How values are stored: as the declared model has them, if all are, or as most values say.
