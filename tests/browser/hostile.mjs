@@ -8,8 +8,9 @@ const name = report.adapters[0].name;
 for (const adapter of report.adapters) Object.assign(adapter, { name: HOSTILE, device: HOSTILE, driver: HOSTILE });
 for (const one of [...report.groups, ...report.failures, ...report.deviations]) if (one.adapter === name) one.adapter = HOSTILE;
 for (const group of report.groups) {
-  if (group.explanation) group.explanation = HOSTILE;
-  for (const field of ["problem", "skip_reason"]) if (group[field]) group[field] += HOSTILE;
+  for (const one of group.diagnosis?.explanations ?? []) one.says = HOSTILE;
+  for (const one of group.problems ?? []) one.says += HOSTILE;
+  if (group.skip_reason) group.skip_reason += HOSTILE;
 }
 for (const failure of report.failures) {
   failure.output = HOSTILE;
