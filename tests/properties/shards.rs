@@ -9,7 +9,7 @@ use lightmeter::device::Code;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Silent;
 use lightmeter::document::pack::Choice;
-use lightmeter::document::report::{Report, Sentence};
+use lightmeter::document::report::Report;
 use lightmeter::document::{Document as _, Number};
 use lightmeter::faults::{Mistakes, Variation, concerning};
 use lightmeter::filter::Filter;
@@ -119,7 +119,6 @@ fn judged(wrong: &[(&'static str, Wrong)], truncates: bool, cases: u64, shard: S
 fn alike(mut report: Report) -> String {
     report.seconds = 0.0;
     report.timing = Default::default();
-    report.notes = Vec::<Sentence>::new();
     if let Some(renderer) = &mut report.renderer {
         renderer.starts = 0;
         renderer.warnings.clear();

@@ -59,11 +59,11 @@ impl Kept {
         for group in &mut groups {
             let kept = self.0.get(&key(group)).map_or(&[][..], Vec::as_slice);
             let samples: Vec<&GroupSample> = kept.iter().flatten().collect();
-            // Scenes and tables of special values are judged whole, and keep none.
+            // Scenes and tables of special values keep none, nor does what a renderer was not asked.
             if samples.len() == kept.len() && !samples.is_empty() {
                 let told = context.group(group, &samples, whole);
                 told.map_err(|error| NoWhole(format!("{}: {error}", group.id)))?;
-            } else if kept.len() > 1 && !group.id.starts_with("special/") {
+            } else if kept.len() > 1 && group.totals.verdicts > 0 && !group.id.starts_with("special/") {
                 left_out += 1;
                 group.diagnosis = None;
                 group.problems.clear();
