@@ -50,7 +50,7 @@ fn what_fails_is_told_first_with_its_cause_and_counted_once() {
     assert!(explanation.contains("linear fog begins at the eye"), "{explanation}");
     let alone = json(&["run", "fog/linear", "--cases", "512", "--shaders", dir, "--format", "json"]);
     for count in ["cases", "verdicts", "failed", "passed", "indeterminate"] {
-        assert_eq!(group(&report)[count], group(&alone)[count], "{count}: what the scouts judged is not counted");
+        assert_eq!(group(&report)[count], group(&alone)[count], "{count}: what the scouts judged is counted once");
     }
 }
 
@@ -82,6 +82,29 @@ fn a_run_that_is_told_to_stop_reports_what_was_judged() {
         assert_eq!(report["interrupted"]["under_way"], "fog/exp", "{report}");
         let count = |name: &str| report["totals"][name].as_u64().unwrap_or_default();
         assert!(count("verdicts") > 0 && count("failed") == 0, "{report}");
+    }
+}
+
+/// The scouts of a group come to the report whether the run comes to the group or not.
+#[test]
+fn a_run_that_is_told_to_stop_reports_its_scouts() {
+    let args = ["run", "color", "fog", "--cases", "512", "--adapter", "cpu", "--format", "json"];
+    let cases = |report: &Value| -> Vec<u64> {
+        let groups = report["groups"].as_array().expect("an array");
+        groups.iter().map(|group| group["cases"].as_u64().unwrap_or_default()).collect()
+    };
+    let whole = cases(&json(&args));
+    // Each group's scouts advance the run once.
+    let among_scouts = stopped_at("advanced:2", &args, Signal::INT);
+    let after_scouts = stopped_at(&format!("advanced:{}", whole.len() + 1), &args, Signal::INT);
+    for (output, has_all) in [(among_scouts, false), (after_scouts, true)] {
+        assert_eq!(code(&output), 130, "{}", stderr(&output));
+        let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let cases = cases(&report);
+        assert_eq!(cases.len() == whole.len(), has_all, "{report}");
+        assert!(cases.len() > 1 && cases.iter().all(|&count| count > 0), "{report}");
+        assert!(!has_all || cases.last().is_some_and(|last| last < &whole[whole.len() - 1]), "{report}");
+        assert_eq!(report["totals"]["failed"], 0, "{report}");
     }
 }
 

@@ -5,11 +5,12 @@ use crate::blend_unit::run::{NotedPixels, run_again};
 use crate::device::DeviceError;
 use crate::image;
 use crate::options::Options;
-use crate::row_run::{Asked, RowRun};
+use crate::row_run::{RowRun, Stages};
 use crate::selection::Selection;
 use crate::special::asked::{NotedProbe, ask_again as ask_probes};
 use crate::subject::Subject;
-use crate::turn::{CHUNK, Turn, cases_of, scene_of};
+use crate::supply::RowGroup;
+use crate::turn::{Turn, scene_of};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::Observer;
@@ -36,7 +37,7 @@ pub(crate) enum Noted {
 /// failed. The report lists each case whose answer differs from the first.
 pub(crate) fn ask_again(
     selection: &Selection,
-    noted: &[(Turn<'_>, Noted)],
+    (noted, groups): (&[(Turn<'_>, Noted)], &[RowGroup<'_>]),
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
@@ -55,7 +56,7 @@ pub(crate) fn ask_again(
         for renderer in subjects.iter_mut().filter(|_| options.runs > 1).filter_map(Subject::asked_mut) {
             renderer.begin_again()?;
         }
-        let mut pass = Pass { selection, subjects, options, report, observer };
+        let mut pass = Pass { selection, groups, subjects, options, report, observer };
         for (turn, noted) in noted {
             if pass.options.stop.is_set() {
                 break;
@@ -69,6 +70,7 @@ pub(crate) fn ask_again(
 /// One time that all is asked again.
 struct Pass<'a> {
     selection: &'a Selection,
+    groups: &'a [RowGroup<'a>],
     subjects: &'a mut [Subject],
     options: &'a Options,
     report: &'a mut Report,
@@ -92,7 +94,7 @@ impl Pass<'_> {
                 let (cases, digests): (Vec<_>, Vec<_>) =
                     failing.iter().map(|&(case, digest)| ((0, case), digest)).unzip();
                 let members = [&self.selection.catalogue[group[0].member]];
-                let run = RowRun::new(&members, RowRun::compile(members[0], self.subjects, self.options)?, Asked::All);
+                let run = RowRun::new(&members, self.subjects, self.options)?;
                 self.chunk(&run, &members, &cases, &[vec![&digests]])
             }
             (Turn::Table(_), Noted::Probes(noted)) => ask_probes(noted, self.subjects, self.options, self.report),
@@ -123,26 +125,21 @@ impl Pass<'_> {
         run_again(&members, group, noted, self.subjects, self.options, self.report)
     }
 
-    /// All cases of a group, in the same chunks.
+    /// All cases of a group, in the same order.
     fn rows(&mut self, group: &[Selected], digests: &[Vec<Digests>]) -> Result<(), DeviceError> {
-        let catalogue = &self.selection.catalogue;
-        let members: Vec<&Member> = group.iter().map(|chosen| &catalogue[chosen.member]).collect();
-        let is_asked = self.selection.is_by_formula;
-        let rows: Vec<Selected> = (group.iter().zip(&members))
-            .map(|(chosen, member)| if is_asked { chosen.clone() } else { chosen.rows(member) })
-            .collect();
-        let run = RowRun::new(&members, RowRun::compile(members[0], self.subjects, self.options)?, Asked::All);
-        let (mut all, mut done) = (cases_of(&rows), 0);
-        while !self.options.stop.is_set() {
-            let next: Vec<(usize, CaseRef)> = all.by_ref().take(CHUNK).collect();
-            if next.is_empty() {
+        let first = &self.selection.catalogue[group[0].member].spec.id;
+        let Some(group) = self.groups.iter().find(|rows| rows.members()[0].spec.id == *first) else { return Ok(()) };
+        let run = RowRun::new(group.members(), self.subjects, self.options)?;
+        let mut done = 0;
+        for next in std::iter::once(group.scouted().to_vec()).chain(group.chunks()).filter(|next| !next.is_empty()) {
+            if self.options.stop.is_set() {
                 break;
             }
             let of_chunk = |stage: &'_ Digests| stage.0.get(done..done + next.len()).unwrap_or_default().to_vec();
             let before: Vec<Vec<Vec<u32>>> =
                 digests.iter().map(|stages| stages.iter().map(of_chunk).collect()).collect();
             let before: Vec<Vec<&Vec<u32>>> = before.iter().map(|stages| stages.iter().collect()).collect();
-            self.chunk(&run, &members, &next, &before)?;
+            self.chunk(&run, group.members(), &next, &before)?;
             done += next.len();
         }
         Ok(())
@@ -156,7 +153,7 @@ impl Pass<'_> {
         cases: &[(usize, CaseRef)],
         before: &[Vec<&Vec<u32>>],
     ) -> Result<(), DeviceError> {
-        let begun = run.begin(cases, self.subjects, self.options, self.report)?;
+        let begun = run.begin(cases, Stages::All, self.subjects, self.options, self.report)?;
         let now = run.answers(begun, self.subjects, self.observer)?;
         for (before, now) in before.iter().zip(&now).flat_map(|(before, now)| before.iter().zip(now)) {
             for ((&(member, case), &before), &now) in cases.iter().zip(*before).zip(&now.0) {

@@ -4,8 +4,9 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::report::{Diagnosis, OtherFormulas};
-use lightmeter_judge::diagnose::{Diagnose, Row, Told};
+use lightmeter_judge::diagnose::{Diagnose, Told};
 use lightmeter_judge::formula::RowSample;
+use lightmeter_judge::kept::KeptRow;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
@@ -28,7 +29,7 @@ impl GroupRows<'_> {
     /// The mistake that explains the failing rows; if none does, the systematic error that all rows show together. In a group of several
     /// formulas, those that fail most often are diagnosed one by one, and the mistake that explains most of them is told. `granted` is what is
     /// legal on the subject with all that is known of it.
-    pub(crate) fn told(&self, diagnose: Option<&dyn Diagnose>, granted: &Profile, seed: u64) -> Told {
+    pub(crate) fn told(&self, diagnose: Option<&dyn Diagnose>, granted: &Profile) -> Told {
         let (members, wrong, right) = (self.members, self.wrong.rows(), self.right.rows());
         let Some(diagnose) = diagnose else { return Told::default() };
         // A rasteriser or a depth test has no parameters that could be slightly off, so a systematic error is only looked for in shaders.
@@ -39,7 +40,7 @@ impl GroupRows<'_> {
         failing.sort_unstable_by_key(|(member, count)| (Reverse(*count), *member));
         let told_of = |(place, count): (usize, u64)| {
             let member = members[place];
-            let rows = [&wrong, &right].map(|rows| of_member(member, place, rows, seed));
+            let rows = [&wrong, &right].map(|rows| of_member(place, rows));
             Told::of(diagnose, member, [&rows[0], &rows[1]], count, granted)
         };
         if members.len() == 1 || failing.is_empty() {
@@ -69,14 +70,7 @@ pub(crate) const fn is_shader(stage: Stage) -> bool {
     matches!(stage, Stage::Compute | Stage::Fragment | Stage::Answer)
 }
 
-/// The rows of one formula, by its place among the group's, with their inputs.
-fn of_member<'a>(member: &Member, place: usize, rows: &[((usize, CaseRef), &'a [f32])], seed: u64) -> Vec<Row<'a>> {
-    let draws = member.draws(seed);
-    let row = |&((_, case), values): &((usize, CaseRef), &'a [f32])| {
-        let mut inputs = Vec::with_capacity(member.spec.input_len());
-        draws.inputs(case, &mut inputs);
-        (inputs, values, case)
-    };
-    // A hard case is one of its own formula alone.
-    rows.iter().filter(|((of, _), _)| *of == place).map(row).collect()
+/// The rows of one formula, by its place among the group's.
+fn of_member<'a>(place: usize, rows: &[((usize, CaseRef), &'a KeptRow)]) -> Vec<(CaseRef, &'a KeptRow)> {
+    rows.iter().filter(|((of, _), _)| *of == place).map(|((_, case), row)| (*case, *row)).collect()
 }

@@ -12,7 +12,8 @@ use crate::image;
 use crate::image::run::BegunScene;
 use crate::options::Options;
 use crate::renderer::AskedRenderer;
-use crate::row_run::{Asked, Begun, CompiledGroups, RowRun};
+use crate::row_run::{Begun, RowRun, Stages};
+use crate::scout::{Scouted, ScoutedGroups, few};
 use crate::selection::Selection;
 use crate::special;
 use crate::special::verdict::Table;
@@ -26,6 +27,7 @@ use lightmeter_catalogue::scene::select::Chosen;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::report::{Failure, Group, Report};
+use lightmeter_judge::chunk::Chunk;
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -61,8 +63,8 @@ struct Step<'a> {
 enum Work<'a> {
     /// Nothing yet: what is asked for in one go, rows that nobody answers any more, a group without rows.
     Nothing,
-    Rows(Begun<'a>),
-    Scene(BegunScene),
+    Rows(Vec<Begun<'a>>),
+    Scene(Box<BegunScene>),
 }
 
 impl Step<'_> {
@@ -96,6 +98,7 @@ enum After {
 
 /// A group of formulas, some of whose rows subjects are at work on.
 struct GroupRun<'a> {
+    place: usize,
     run: RowRun<'a>,
     /// What a blend unit left.
     pixels: Option<NotedPixels>,
@@ -124,7 +127,8 @@ pub(crate) struct InTurn<'a, 'r> {
     supply: Supply<'a>,
     subjects: &'r mut [Subject],
     options: &'r Options,
-    compiled: CompiledGroups,
+    /// Groups whose scouts are judged.
+    scouted: ScoutedGroups<'a>,
     report: &'r mut Report,
     observer: &'r mut dyn Observer,
     /// The groups that are under way, the first that is judged in front.
@@ -144,11 +148,11 @@ impl<'a, 'r> InTurn<'a, 'r> {
         selection: &'a Selection,
         supply: Supply<'a>,
         subjects: &'r mut [Subject],
-        (options, compiled): (&'r Options, CompiledGroups),
+        (options, scouted): (&'r Options, ScoutedGroups<'a>),
         report: &'r mut Report,
         observer: &'r mut dyn Observer,
     ) -> Self {
-        Self { selection, supply, subjects, options, compiled, report, observer, groups: VecDeque::new() }
+        Self { selection, supply, subjects, options, scouted, report, observer, groups: VecDeque::new() }
     }
 
     /// Judges one after the other, until a device fails or the run is stopped.
@@ -168,15 +172,27 @@ impl<'a, 'r> InTurn<'a, 'r> {
             {
                 under_way.push_back(self.begin(part));
             }
-            let Some(step) = under_way.pop_front() else { return Ok(outcome) };
+            let Some(step) = under_way.pop_front() else { return Ok(self.ended(outcome)) };
             let place = step.part.place;
             match self.judge(step, &under_way, &mut outcome)? {
                 After::More => {}
                 // A renderer that failed within a turn is asked no more of it.
                 After::Turn => while parts.next_if(|part| part.place == place).is_some() {},
-                After::All => return Ok(outcome),
+                After::All => return Ok(self.ended(outcome)),
             }
         }
+    }
+
+    /// What came of all, with the scouts of the groups that the run did not come to.
+    fn ended(mut self, mut outcome: Outcome<'a>) -> Outcome<'a> {
+        let begun = std::mem::take(&mut self.groups).into_iter().map(|group| (group.place, group.run));
+        let scouted = std::mem::take(&mut self.scouted).into_iter().map(|(place, scouted)| (place, scouted.run));
+        for (place, run) in begun.chain(scouted) {
+            let (groups, failures) = few(&run, self.subjects, self.options, self.report);
+            run.note(self.subjects, self.report);
+            outcome.judged.push((place, groups, failures));
+        }
+        outcome
     }
 
     /// Whether a renderer is asked, case by case.
@@ -195,7 +211,8 @@ impl<'a, 'r> InTurn<'a, 'r> {
             (Some(rows), _) => self.begin_rows(rows),
             (None, Turn::Scene(chosen)) if !self.is_asked() => {
                 let loaded = scene_of(chosen, self.selection);
-                image::run::begin(loaded, self.subjects, self.options, self.report).map(Work::Scene)
+                image::run::begin(loaded, self.subjects, self.options, self.report)
+                    .map(|begun| Work::Scene(Box::new(begun)))
             }
             _ => Ok(Work::Nothing),
         };
@@ -203,28 +220,35 @@ impl<'a, 'r> InTurn<'a, 'r> {
     }
 
     fn begin_rows(&mut self, rows: &Rows<'a>) -> Result<Work<'a>, DeviceError> {
-        let members = rows.group.members();
+        let place = rows.group.turn();
+        let mut begun = vec![];
         if rows.is_first {
             let clock = Instant::now();
-            let compiled = match self.compiled.remove(members[0].spec.group()) {
-                Some(compiled) => compiled,
-                None => RowRun::compile(members[0], self.subjects, self.options)?,
+            let (run, scouted) = match self.scouted.remove(&place) {
+                Some(Scouted { run, chunk }) => (run, Some(chunk)),
+                None => (RowRun::new(rows.group.members(), self.subjects, self.options)?, None),
             };
-            let run = RowRun::new(members, compiled, Asked::All);
-            let run = if self.options.runs > 1 { run.noting() } else { run };
-            self.groups.push_back(GroupRun { run, pixels: None });
             self.report.timing.compile += clock.elapsed().as_secs_f64();
+            self.groups.push_back(GroupRun { place, run, pixels: None });
+            if let Some(chunk) = scouted {
+                begun.push(self.start(chunk, Stages::Rest)?);
+            }
         }
         let has_ended =
             self.is_asked() && self.subjects.iter().all(|one| one.asked().is_some_and(AskedRenderer::is_over));
-        if rows.cases.is_empty() || has_ended {
-            return Ok(Work::Nothing);
+        if !rows.cases.is_empty() && !has_ended {
+            let ready = self.supply.next(place);
+            self.report.timing.generate += ready.drawing;
+            self.report.timing.reference += ready.evaluating;
+            begun.push(self.start(ready.chunk, Stages::All)?);
         }
-        let ready = self.supply.next(rows.group.turn());
-        self.report.timing.generate += ready.drawing;
-        self.report.timing.reference += ready.evaluating;
+        Ok(if begun.is_empty() { Work::Nothing } else { Work::Rows(begun) })
+    }
+
+    /// Hands cases of the group that began last to stages of every subject.
+    fn start(&mut self, chunk: Chunk<'a>, stages: Stages) -> Result<Begun<'a>, DeviceError> {
         let group = self.groups.back().expect("a group is under way once its first rows have begun");
-        group.run.start(ready.chunk, self.subjects, self.report).map(Work::Rows)
+        group.run.start(chunk, stages, self.subjects, self.report)
     }
 
     /// Judges a part and, where it is the last of its turn, takes what came of the turn. Some parts have begun after it.
@@ -297,7 +321,7 @@ impl<'a, 'r> InTurn<'a, 'r> {
         let (options, report) = (self.options, &mut *self.report);
         match (begun, &mut *self.subjects) {
             (Work::Scene(begun), subjects) => {
-                image::run::judge(begun, chosen, subjects, options, report, self.observer)?;
+                image::run::judge(*begun, chosen, subjects, options, report, self.observer)?;
                 Ok(Noted::Nothing)
             }
             (_, [subject]) => {
@@ -356,7 +380,11 @@ impl<'a, 'r> InTurn<'a, 'r> {
     fn chunk(&mut self, begun: Work<'a>, rows: &Rows<'a>, is_asked: bool) -> Result<(), DeviceError> {
         let run = &mut self.groups.front_mut().expect("it has begun").run;
         match begun {
-            Work::Rows(begun) => run.judge(begun, self.subjects, self.options, self.report, self.observer)?,
+            Work::Rows(begun) => {
+                for cases in begun {
+                    run.judge(cases, self.subjects, self.options, self.report, self.observer)?;
+                }
+            }
             _ => run.leave_out(&rows.cases),
         }
         if !is_asked {
@@ -367,7 +395,7 @@ impl<'a, 'r> InTurn<'a, 'r> {
 
     /// Reports the group that is judged, and examines its stable forms.
     fn finish(&mut self, chosen: &[Selected], members: &[&Member], is_asked: bool) -> Result<Noted, DeviceError> {
-        let GroupRun { mut run, pixels } = self.groups.pop_front().expect("it has begun");
+        let GroupRun { mut run, pixels, .. } = self.groups.pop_front().expect("it has begun");
         let (options, report) = (self.options, &mut *self.report);
         let first = report.groups.len();
         let digests = run.noted();

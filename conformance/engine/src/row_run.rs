@@ -10,18 +10,15 @@ use lightmeter_catalogue::cases::{Spec, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::Number;
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::report::{Diagnosis, Group, GroupSample, Report, Totals};
+use lightmeter_document::report::{Diagnosis, Failure, Group, GroupSample, Report, Timing, Totals};
 use lightmeter_judge::cases::Unanswered;
 use lightmeter_judge::chunk::{self, Chunk};
 use lightmeter_judge::diagnose::Told;
 use lightmeter_judge::formula::{Judging, RowPlace, RowSample, RowStanding};
+use lightmeter_judge::kept::KeptRow;
 use lightmeter_judge::packed::packed;
 use lightmeter_judge::tally::KEPT_FAILURES;
-use std::collections::HashMap;
 use std::time::Instant;
-
-/// The stages of every subject that are compiled already, by group.
-pub(crate) type CompiledGroups = HashMap<String, Vec<Compiled>>;
 
 /// A group of formulas in the stages that take rows.
 pub(crate) struct RowRun<'a> {
@@ -30,32 +27,43 @@ pub(crate) struct RowRun<'a> {
     compiled: Vec<Compiled>,
     /// What each of them has come to, and in how many seconds.
     standings: Vec<Vec<(RowStanding, f64)>>,
-    /// Which stages are asked.
-    asked: Asked,
     /// What each stage of each subject answered to each case in turn, where that is wanted.
     digests: Option<Vec<Vec<Digests>>>,
 }
 
 /// Which stages of a subject are asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Asked {
+pub(crate) enum Stages {
     /// All that there are.
     All,
     /// All but the fragment stage where the same function is asked for in the compute stage.
-    OneOfShaders,
+    First,
+    /// What `First` leaves out.
+    Rest,
 }
 
-impl Asked {
-    /// The stages that are asked.
-    fn of<T, E>(self, stages: &[(Stage, Result<T, E>)]) -> impl Iterator<Item = &(Stage, Result<T, E>)> {
-        let has_compute = stages.iter().any(|(stage, work)| *stage == Stage::Compute && work.is_ok());
-        let skipped = (self == Self::OneOfShaders && has_compute).then_some(Stage::Fragment);
-        stages.iter().filter(move |(stage, _)| Some(*stage) != skipped)
+impl Stages {
+    /// Whether a stage among all is one of them.
+    fn has<T, E>(self, stage: Stage, all: &[(Stage, Result<T, E>)]) -> bool {
+        let has_compute = || all.iter().any(|(stage, work)| *stage == Stage::Compute && work.is_ok());
+        let is_later = || stage == Stage::Fragment && has_compute();
+        match self {
+            Self::All => true,
+            Self::First => !is_later(),
+            Self::Rest => is_later(),
+        }
     }
 }
 
-/// A job of a stage, and how long it took to hand it over; `None` where the stage is skipped.
-type Submitted = (Option<Job>, f64);
+/// What a stage was handed.
+enum Submitted {
+    /// Nothing: it is not asked now.
+    Nothing,
+    /// It is skipped.
+    Skipped,
+    /// A job, and how long it took to hand it over.
+    Job(Job, f64),
+}
 
 /// Cases that the subjects are at work on.
 pub(crate) struct Begun<'a> {
@@ -64,27 +72,29 @@ pub(crate) struct Begun<'a> {
 }
 
 impl<'a> RowRun<'a> {
-    /// The stages of every subject, compiled.
-    pub(crate) fn compile(
-        member: &Member,
+    /// Of a group, with its stages of every subject compiled. It notes what is answered where all is asked again.
+    pub(crate) fn new(
+        members: &'a [&'a Member],
         subjects: &mut [Subject],
         options: &Options,
-    ) -> Result<Vec<Compiled>, DeviceError> {
-        subjects.iter_mut().map(|subject| subject.compile(&options.code, member)).collect()
-    }
-
-    /// Of a group, whose stages are compiled.
-    pub(crate) fn new(members: &'a [&'a Member], compiled: Vec<Compiled>, asked: Asked) -> Self {
+    ) -> Result<Self, DeviceError> {
+        let compile = |subject: &mut Subject| subject.compile(&options.code, members[0]);
+        let compiled: Vec<Compiled> = subjects.iter_mut().map(compile).collect::<Result<_, DeviceError>>()?;
         let outputs = members[0].spec.output_len();
-        let blank =
-            |compiled: &Compiled| asked.of(&compiled.stages).map(|_| (RowStanding::new(outputs), 0.0)).collect();
-        Self { members, standings: compiled.iter().map(blank).collect(), compiled, asked, digests: None }
+        let blank = |compiled: &Compiled| compiled.stages.iter().map(|_| (RowStanding::new(outputs), 0.0)).collect();
+        let undigested = |compiled: &Compiled| compiled.stages.iter().map(|_| Digests::default()).collect();
+        let digests = (options.runs > 1).then(|| compiled.iter().map(undigested).collect());
+        Ok(Self { members, standings: compiled.iter().map(blank).collect(), compiled, digests })
     }
 
-    /// The same, which notes what is answered to each case.
-    pub(crate) fn noting(self) -> Self {
-        let blank = |compiled: &Compiled| self.asked.of(&compiled.stages).map(|_| Digests::default()).collect();
-        Self { digests: Some(self.compiled.iter().map(blank).collect()), ..self }
+    /// The group's id.
+    pub(crate) fn id(&self) -> &'a str {
+        self.members[0].spec.group()
+    }
+
+    /// Whether a verdict fails.
+    pub(crate) fn fails(&self) -> bool {
+        self.standings.iter().flatten().any(|(standing, _)| standing.tally.totals.failed > 0)
     }
 
     /// What was answered to each case by each stage of each subject, where it was noted.
@@ -92,10 +102,11 @@ impl<'a> RowRun<'a> {
         self.digests.take()
     }
 
-    /// Draws cases, each with its formula's place among the group's, and hands them to every stage of every subject.
+    /// Draws cases, each with its formula's place among the group's, and hands them to stages of every subject.
     pub(crate) fn begin(
         &self,
         cases: &[(usize, CaseRef)],
+        stages: Stages,
         subjects: &mut [Subject],
         options: &Options,
         report: &mut Report,
@@ -103,23 +114,24 @@ impl<'a> RowRun<'a> {
         let clock = Instant::now();
         let chunk = chunk::draw(self.members, cases, options.seed);
         report.timing.generate += clock.elapsed().as_secs_f64();
-        self.start(chunk, subjects, report)
+        self.start(chunk, stages, subjects, report)
     }
 
-    /// Hands cases that are drawn already to every stage of every subject.
+    /// Hands cases that are drawn already to stages of every subject.
     pub(crate) fn start(
         &self,
         chunk: Chunk<'a>,
+        stages: Stages,
         subjects: &mut [Subject],
         report: &mut Report,
     ) -> Result<Begun<'a>, DeviceError> {
         let clock = Instant::now();
-        let jobs = self.submit(subjects, &chunk)?;
+        let jobs = self.submit(stages, subjects, &chunk)?;
         report.timing.devices += clock.elapsed().as_secs_f64();
         Ok(Begun { chunk, jobs })
     }
 
-    /// Works out what is legal while the subjects work, and judges what they give.
+    /// Works out what is legal while the subjects work, and judges what they give; the cases with what is legal.
     pub(crate) fn end(
         &mut self,
         mut begun: Begun<'a>,
@@ -127,7 +139,7 @@ impl<'a> RowRun<'a> {
         options: &Options,
         report: &mut Report,
         observer: &mut dyn Observer,
-    ) -> Result<(), DeviceError> {
+    ) -> Result<Chunk<'a>, DeviceError> {
         let clock = Instant::now();
         chunk::refer(&mut begun.chunk, options.profile);
         report.timing.reference += clock.elapsed().as_secs_f64();
@@ -145,9 +157,9 @@ impl<'a> RowRun<'a> {
         let mut all = vec![];
         for (subject, compiled) in subjects.iter_mut().zip(&self.compiled) {
             let mut stages = vec![];
-            for (_, work) in self.asked.of(&compiled.stages) {
+            for (_, work) in &compiled.stages {
                 let mut digests = Digests::default();
-                if let (Some((Some(job), _)), Ok(work)) = (jobs.next(), work) {
+                if let (Some(Submitted::Job(job, _)), Ok(work)) = (jobs.next(), work) {
                     let mut advanced = |count| observer.see(&Event::Advanced(count));
                     let answers = subject.finish(work, job, &rows(&begun.chunk), &mut advanced)?;
                     digests.note(&answers, self.members[0].spec.output_len(), begun.chunk.cases.len());
@@ -162,7 +174,7 @@ impl<'a> RowRun<'a> {
     /// A sample of at most `most` failing cases for each stage of each subject, each with a hash of its answer.
     pub(crate) fn failing(&self, most: usize) -> Vec<Vec<Vec<(CaseRef, u32)>>> {
         let of_stage = |(standing, _): &(RowStanding, f64)| {
-            let values = |values: &[f32]| digest_of_values(values.iter().map(|&value| value.into()));
+            let values = |row: &KeptRow| digest_of_values(row.values.iter().map(|&value| value.into()));
             let rows = standing.wrong.rows().into_iter().map(|((_, case), row)| (case, values(row)));
             let refused = standing.cases.refused.iter().filter(|(_, why)| matches!(why, Unanswered::Unjudged(_)));
             let mut all: Vec<(CaseRef, u32)> =
@@ -186,20 +198,28 @@ impl<'a> RowRun<'a> {
         digests.for_each(|digests| digests.0.extend(cases.iter().map(|_| UNASKED)));
     }
 
-    /// Hands a chunk to every stage of every subject, in the order in which the jobs are finished.
-    fn submit(&self, subjects: &mut [Subject], chunk: &Chunk<'_>) -> Result<Vec<Submitted>, DeviceError> {
+    /// Hands a chunk to stages of every subject, in the order in which the jobs are finished.
+    fn submit(
+        &self,
+        stages: Stages,
+        subjects: &mut [Subject],
+        chunk: &Chunk<'_>,
+    ) -> Result<Vec<Submitted>, DeviceError> {
         let mut jobs = vec![];
         for (subject, compiled) in subjects.iter_mut().zip(&self.compiled) {
-            for (_, work) in self.asked.of(&compiled.stages) {
+            for (stage, work) in &compiled.stages {
                 let clock = Instant::now();
-                let job = work.as_ref().ok().map(|work| subject.submit(work, &rows(chunk))).transpose()?;
-                jobs.push((job, clock.elapsed().as_secs_f64()));
+                jobs.push(match work {
+                    _ if !stages.has(*stage, &compiled.stages) => Submitted::Nothing,
+                    Err(_) => Submitted::Skipped,
+                    Ok(work) => Submitted::Job(subject.submit(work, &rows(chunk))?, clock.elapsed().as_secs_f64()),
+                });
             }
         }
         Ok(jobs)
     }
 
-    /// Waits for every stage of every subject, and judges what it gave.
+    /// Waits for the stages of every subject, and judges what they gave; the cases.
     pub(crate) fn judge(
         &mut self,
         Begun { chunk, jobs }: Begun<'a>,
@@ -207,16 +227,20 @@ impl<'a> RowRun<'a> {
         options: &Options,
         report: &mut Report,
         observer: &mut dyn Observer,
-    ) -> Result<(), DeviceError> {
+    ) -> Result<Chunk<'a>, DeviceError> {
         let (mut jobs, cases) = (jobs.into_iter(), chunk.cases.len() as u64);
         let outputs = self.members[0].spec.output_len();
         for (place, (subject, compiled)) in subjects.iter_mut().zip(&self.compiled).enumerate() {
-            let stages = self.asked.of(&compiled.stages).zip(&mut self.standings[place]).enumerate();
+            let stages = compiled.stages.iter().zip(&mut self.standings[place]).enumerate();
             for (number, ((stage, work), (standing, seconds))) in stages {
-                let (Some((Some(job), submitting)), Ok(work)) = (jobs.next(), work) else {
-                    standing.tally.totals.cases += cases;
-                    standing.tally.totals.skipped += cases;
-                    continue;
+                let (job, submitting, work) = match (jobs.next(), work) {
+                    (Some(Submitted::Job(job, submitting)), Ok(work)) => (job, submitting, work),
+                    (Some(Submitted::Skipped), _) => {
+                        standing.tally.totals.cases += cases;
+                        standing.tally.totals.skipped += cases;
+                        continue;
+                    }
+                    _ => continue,
                 };
                 let clock = Instant::now();
                 let answers =
@@ -232,48 +256,65 @@ impl<'a> RowRun<'a> {
                 *seconds += submitting + waiting + clock.elapsed().as_secs_f64();
             }
         }
-        Ok(())
+        Ok(chunk)
     }
 
-    /// Adds a group for each stage of each subject to the report, and hands back what was compiled.
-    pub(crate) fn finish(mut self, subjects: &[Subject], options: &Options, report: &mut Report) -> Vec<Compiled> {
-        let standings = std::mem::take(&mut self.standings);
-        for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(standings) {
-            let mut before: Option<(RowSample, RowSample, Told)> = None;
-            for ((stage, work), (standing, seconds)) in self.asked.of(&compiled.stages).zip(standings) {
+    /// Adds a group for each stage of each subject to the report.
+    pub(crate) fn finish(self, subjects: &[Subject], options: &Options, report: &mut Report) {
+        let (groups, failures) = self.groups(subjects, options, &mut report.timing);
+        report.groups.extend(groups);
+        report.failures.extend(failures);
+        self.note(subjects, report);
+    }
+
+    /// Notes in a report what deviations and known failures excused.
+    pub(crate) fn note(&self, subjects: &[Subject], report: &mut Report) {
+        for (subject, standings) in subjects.iter().zip(&self.standings) {
+            for (standing, _) in standings {
                 for (name, excused) in &standing.tally.excused {
                     report.excuse(name, &subject.identity.name, *excused);
                 }
+                standing.cases.note(&mut report.expectations);
+            }
+        }
+    }
+
+    /// A group for each stage of each subject, and the failures that are reported.
+    pub(crate) fn groups(
+        &self,
+        subjects: &[Subject],
+        options: &Options,
+        timing: &mut Timing,
+    ) -> (Vec<Group>, Vec<Failure>) {
+        let (mut groups, mut failures) = (vec![], vec![]);
+        for ((subject, compiled), standings) in subjects.iter().zip(&self.compiled).zip(&self.standings) {
+            let by = options.judging(subject);
+            let mut before: Option<(&RowStanding, Told)> = None;
+            for ((stage, work), (standing, seconds)) in compiled.stages.iter().zip(standings) {
                 let clock = Instant::now();
                 // Where the fragment stage gave the same bits as the compute stage, the diagnosis is the same: it is not made twice.
                 let told = match before.take() {
-                    Some((wrong, right, told))
-                        if is_shader(*stage) && wrong == standing.wrong && right == standing.right =>
-                    {
-                        told
-                    }
-                    _ => self.told(&standing, *stage, subject, options),
+                    Some((other, told)) if is_shader(*stage) && is_like(other, standing) => told,
+                    _ => self.told(standing, *stage, subject, options),
                 };
-                report.timing.diagnose += clock.elapsed().as_secs_f64();
-                let by = options.judging(subject);
-                let mut group = self.group(&standing, *stage, told.clone(), &by);
-                group.seconds = seconds;
-                group.sample = options.keeps_samples().then(|| sampled(self.members, &standing));
-                group.skip_reason = work.as_ref().err().map(|reason| (*reason).into());
-                report.groups.push(group);
-                report.failures.extend(standing.failures(self.members, *stage, &by).into_iter().take(KEPT_FAILURES));
-                standing.cases.note(&mut report.expectations);
-                let RowStanding { wrong, right, .. } = standing;
-                before = is_shader(*stage).then_some((wrong, right, told));
+                timing.diagnose += clock.elapsed().as_secs_f64();
+                groups.push(Group {
+                    seconds: *seconds,
+                    sample: options.keeps_samples().then(|| sampled(self.members, standing)),
+                    skip_reason: work.as_ref().err().map(|reason| (*reason).into()),
+                    ..self.group(standing, *stage, told.clone(), &by)
+                });
+                failures.extend(standing.failures(self.members, *stage, &by).into_iter().take(KEPT_FAILURES));
+                before = is_shader(*stage).then_some((standing, told));
             }
         }
-        self.compiled
+        (groups, failures)
     }
 
     fn told(&self, standing: &RowStanding, stage: Stage, subject: &Subject, options: &Options) -> Told {
         let RowStanding { failing, wrong, right, .. } = standing;
         let rows = GroupRows { members: self.members, stage, failing, wrong, right };
-        rows.told(options.diagnose, &subject.known.granted(options.profile), options.seed)
+        rows.told(options.diagnose, &subject.known.granted(options.profile))
     }
 
     /// The group of a stage's verdicts.
@@ -290,7 +331,7 @@ impl<'a> RowRun<'a> {
             error_ulp_max: Number(tally.error_max),
             margin_max: Number(tally.worst.as_ref().map_or(0.0, |(margin, _)| *margin)),
             worst: tally.worst.as_ref().map(|(_, place)| name_of(place)),
-            worst_answer: standing.worst_answer(self.members, stage, by),
+            worst_answer: standing.worst_answer(self.members),
             diagnosis,
             problems: problem.into_iter().collect(),
             by_case: counts,
@@ -299,14 +340,20 @@ impl<'a> RowRun<'a> {
     }
 }
 
+/// Whether two stages gave the same.
+fn is_like(one: &RowStanding, other: &RowStanding) -> bool {
+    let is_same = |one: &RowSample, other: &RowSample| one.is_like(other, KeptRow::has_values_of);
+    is_same(&one.wrong, &other.wrong) && is_same(&one.right, &other.right)
+}
+
 /// What a shard keeps of a group's rows.
 fn sampled(members: &[&Member], standing: &RowStanding) -> GroupSample {
     GroupSample {
         formulas: members.iter().map(|member| member.spec.id.clone()).collect(),
         failing: (0..members.len()).map(|place| standing.failing.get(&place).copied().unwrap_or_default()).collect(),
         random: standing.tally.random.into(),
-        wrong: packed(&standing.wrong),
-        right: packed(&standing.right),
+        wrong: packed(&standing.wrong, |row| row.values.clone()),
+        right: packed(&standing.right, |row| row.values.clone()),
         stores: None,
     }
 }

@@ -72,22 +72,25 @@ pub fn run_selection(
     let turns = turns_in_order(selection, subjects);
     let lacks = |id: &str| subjects.iter().filter_map(Subject::asked).any(|renderer| renderer.lacks(id).is_some());
     let (catalogue, is_asked) = (&selection.catalogue, is_asked(subjects));
-    let rows: Vec<RowGroup<'_>> =
+    let mut rows: Vec<RowGroup<'_>> =
         turns.iter().filter_map(|turn| RowGroup::of(turn, catalogue, is_asked, lacks)).collect();
+    scout::choose(&mut rows, subjects);
     std::thread::scope(|scope| -> Result<(), DeviceError> {
         if let Some(read) = subjects.iter().find_map(|subject| subject.device()?.read_ahead(&options.code)) {
             let firsts = rows.iter().map(|group| group.members()[0]);
             scope.spawn(move || firsts.take_while(|_| !options.stop.is_set()).for_each(read));
         }
         let supply = Supply::start(scope, &rows, options);
-        let Some(compiled) = scout::scout(selection, subjects, options, &mut report, observer)? else { return Ok(()) };
-        for &deviation in &selection.deviations {
+        let scouted = scout::scout(&rows, subjects, options, &mut report, observer)?;
+        let is_ended = report.interrupted.is_some();
+        for &deviation in selection.deviations.iter().filter(|_| !is_ended) {
             witness::ask(deviation, &selection.catalogue, subjects, options, &mut report)?;
         }
-        let in_turn = InTurn::new(selection, supply, subjects, (options, compiled), &mut report, observer);
-        let Outcome { mut judged, noted } = in_turn.judge_all(&turns, &rows)?;
+        let in_turn = InTurn::new(selection, supply, subjects, (options, scouted), &mut report, observer);
+        let turns = if is_ended { &[][..] } else { &turns };
+        let Outcome { mut judged, noted } = in_turn.judge_all(turns, &rows)?;
         if report.interrupted.is_none() {
-            let result = ask_again(selection, &noted, subjects, options, &mut report, observer);
+            let result = ask_again(selection, (&noted, &rows), subjects, options, &mut report, observer);
             is_over(result, "what is asked again", options, &mut report)?;
         }
         judged.sort_by_key(|(place, ..)| *place);

@@ -1,18 +1,19 @@
-//! The scouts of a run: a few cases of each formula, so that what is broken is known within seconds. What they judge is told and not
-//! counted: the run judges these cases again with all others, by the shaders that were compiled here. Where a run ends among its scouts, there
-//! is nothing else, and what they judged is its report.
+//! The scouts of a run: of each formula a few cases that are judged before all others, so that what is broken is known within seconds. They are
+//! asked in one stage of those that shaders are evaluated in; the other has them with the first chunk of the group. Where a run ends before
+//! it comes to a group, its scouts are what is reported of it.
 
 use crate::device::DeviceError;
 use crate::options::Options;
-use crate::row_run::{Asked, Begun, CompiledGroups, RowRun};
-use crate::selection::Selection;
+use crate::row_run::{Begun, RowRun, Stages};
 use crate::subject::Subject;
+use crate::supply::RowGroup;
 use crate::under_way::{is_over, tell};
 use lightmeter_catalogue::cases::Kind;
-use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_document::event::{Event, Observer, Silent};
-use lightmeter_document::report::Report;
-use std::collections::VecDeque;
+use lightmeter_document::report::{Failure, Group, Report};
+use lightmeter_judge::chunk::Chunk;
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Instant;
 
 /// Random cases of a group that are scouted, besides its hard cases; of a group of many formulas, one of each at least.
 const SCOUTED: usize = 32;
@@ -21,112 +22,101 @@ const AT_ONCE: usize = 4;
 /// A selection with fewer groups than this has no scouts, since judging all of it takes no longer.
 const LEAST_GROUPS: usize = 8;
 
-/// A group whose cases subjects are at work on.
-struct UnderWay<'a> {
-    members: &'a [&'a Member],
-    run: RowRun<'a>,
-    begun: Begun<'a>,
+/// A group whose scouts are judged: what it has come to, and the cases that a stage has yet to answer.
+pub(crate) struct Scouted<'a> {
+    pub(crate) run: RowRun<'a>,
+    pub(crate) chunk: Chunk<'a>,
 }
 
-/// Judges a few cases of each group, of shaders in the compute stage alone. Gives the stages of every group, compiled; `None` where
-/// a device failed or the run was stopped.
-pub(crate) fn scout(
-    selection: &Selection,
+/// Groups whose scouts are judged, by their turns.
+pub(crate) type ScoutedGroups<'a> = BTreeMap<usize, Scouted<'a>>;
+
+/// Chooses the scouts of each group, unless there are too few groups, or a renderer is asked: that has no time to lose.
+pub(crate) fn choose(groups: &mut [RowGroup<'_>], subjects: &[Subject]) {
+    if groups.len() >= LEAST_GROUPS && subjects.iter().all(|subject| subject.asked().is_none()) {
+        groups.iter_mut().for_each(|group| group.scout(SCOUTED));
+    }
+}
+
+/// Judges the scouts of each group. Where a device fails or the run is stopped, the report says so.
+pub(crate) fn scout<'a>(
+    groups: &'a [RowGroup<'a>],
     subjects: &mut [Subject],
     options: &Options,
     report: &mut Report,
     observer: &mut dyn Observer,
-) -> Result<Option<CompiledGroups>, DeviceError> {
-    let catalogue = &selection.catalogue;
-    let has_rows = |group: &&[Selected]| !catalogue[group[0].member].spec.row_stages().is_empty();
-    let mut groups: Vec<&[Selected]> = selection.groups().filter(has_rows).collect();
-    // A renderer is asked each case once.
-    if groups.len() < LEAST_GROUPS || subjects.iter().any(|subject| subject.asked().is_some()) {
-        return Ok(Some(CompiledGroups::new()));
-    }
-    // Few formulas, and so simple shaders, first.
-    groups.sort_by_key(|group| matches!(catalogue[group[0].member].spec.kind, Kind::Blend(_)));
-    let members: Vec<Vec<&Member>> =
-        groups.iter().map(|group| group.iter().map(|chosen| &catalogue[chosen.member]).collect()).collect();
-    let mut scouts = Scouts { options, compiled: CompiledGroups::new(), report: options.report(subjects) };
-    let mut under_way: VecDeque<UnderWay<'_>> = VecDeque::new();
-    let mut begun = groups.iter().zip(&members);
+) -> Result<ScoutedGroups<'a>, DeviceError> {
+    let mut groups: Vec<&RowGroup<'_>> = groups.iter().filter(|group| !group.scouted().is_empty()).collect();
+    // In the order of reports; few formulas, and so simple shaders, first.
+    groups.sort_by_key(|group| (matches!(group.members()[0].spec.kind, Kind::Blend(_)), group.turn()));
+    let mut scouted = ScoutedGroups::new();
+    let mut under_way: VecDeque<(&RowGroup<'_>, RowRun<'_>, Begun<'_>)> = VecDeque::new();
+    let mut groups = groups.into_iter();
     loop {
-        let next = if under_way.len() < AT_ONCE { begun.next() } else { None };
-        let (id, judged) = match (next, under_way.pop_front()) {
-            (Some((group, members)), waiting) => {
+        let next = if under_way.len() < AT_ONCE { groups.next() } else { None };
+        let (group, judged) = match (next, under_way.pop_front()) {
+            (Some(group), waiting) => {
                 under_way.extend(waiting);
-                let begun = scouts.begin(members, group, subjects);
-                (members[0].spec.group(), begun.map(|begun| under_way.push_back(begun)))
+                let begun = begin(group, subjects, options, report);
+                (group, begun.map(|(run, begun)| under_way.push_back((group, run, begun))))
             }
-            (None, Some(first)) => (first.members[0].spec.group(), scouts.end(first, subjects, observer)),
-            (None, None) => break,
+            (None, Some((group, run, begun))) => {
+                let ended = end(run, begun, subjects, options, report, observer);
+                (group, ended.map(|ended| drop(scouted.insert(group.turn(), ended))))
+            }
+            (None, None) => return Ok(scouted),
         };
-        if is_over(judged, id, options, report)? {
-            // There is nothing else, so these are counted once.
-            report.groups = scouts.report.groups;
-            report.failures = scouts.report.failures;
-            return Ok(None);
+        if is_over(judged, group.members()[0].spec.group(), options, report)? {
+            return Ok(scouted);
         }
-    }
-    report.timing.add(&scouts.report.timing);
-    Ok(Some(scouts.compiled))
-}
-
-struct Scouts<'a> {
-    options: &'a Options,
-    compiled: CompiledGroups,
-    /// What is told and not counted.
-    report: Report,
-}
-
-impl Scouts<'_> {
-    fn begin<'a>(
-        &mut self,
-        members: &'a [&'a Member],
-        group: &[Selected],
-        subjects: &mut [Subject],
-    ) -> Result<UnderWay<'a>, DeviceError> {
-        let clock = std::time::Instant::now();
-        let compiled = RowRun::compile(members[0], subjects, self.options)?;
-        self.report.timing.compile += clock.elapsed().as_secs_f64();
-        let run = RowRun::new(members, compiled, Asked::OneOfShaders);
-        let begun = run.begin(&cases(members, group), subjects, self.options, &mut self.report)?;
-        Ok(UnderWay { members, run, begun })
-    }
-
-    /// Judges what the subjects gave, and tells of what fails.
-    fn end(
-        &mut self,
-        under_way: UnderWay<'_>,
-        subjects: &mut [Subject],
-        observer: &mut dyn Observer,
-    ) -> Result<(), DeviceError> {
-        let UnderWay { members, mut run, begun } = under_way;
-        let id = members[0].spec.group();
-        observer.see(&Event::Group(id));
-        run.end(begun, subjects, self.options, &mut self.report, &mut Silent)?;
-        let (groups, failures) = (self.report.groups.len(), self.report.failures.len());
-        self.compiled.insert(id.to_owned(), run.finish(subjects, self.options, &mut self.report));
-        for group in &mut self.report.groups[groups..] {
-            // With this few cases only a single wrong value tells anything.
-            group.problems.clear();
-            group.totals.failed_groups = 0;
-        }
-        for failure in &mut self.report.failures[failures..] {
-            failure.rerun = self.options.again(failure, false);
-        }
-        tell(&self.report.groups[groups..], &self.report.failures[failures..], true, observer);
-        Ok(())
     }
 }
 
-/// Hard cases, and the first random ones, each with its formula's place among the group's.
-fn cases(members: &[&Member], group: &[Selected]) -> Vec<(usize, CaseRef)> {
-    let random = (SCOUTED / members.len()).max(1);
-    let few = |chosen: &Selected, member: &Member| chosen.rows(member).few(random);
-    let formulas = group.iter().zip(members).enumerate();
-    formulas
-        .flat_map(|(of, (chosen, member))| few(chosen, member).cases().map(|case| (of, case)).collect::<Vec<_>>())
-        .collect()
+fn begin<'a>(
+    group: &'a RowGroup<'a>,
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+) -> Result<(RowRun<'a>, Begun<'a>), DeviceError> {
+    let clock = Instant::now();
+    let run = RowRun::new(group.members(), subjects, options)?;
+    report.timing.compile += clock.elapsed().as_secs_f64();
+    let begun = run.begin(group.scouted(), Stages::First, subjects, options, report)?;
+    Ok((run, begun))
+}
+
+/// Judges what the subjects gave, and tells of what fails.
+fn end<'a>(
+    mut run: RowRun<'a>,
+    begun: Begun<'a>,
+    subjects: &mut [Subject],
+    options: &Options,
+    report: &mut Report,
+    observer: &mut dyn Observer,
+) -> Result<Scouted<'a>, DeviceError> {
+    observer.see(&Event::Group(run.id()));
+    let chunk = run.end(begun, subjects, options, report, &mut Silent)?;
+    observer.see(&Event::Advanced(chunk.cases.len() as u64));
+    if run.fails() {
+        let (groups, mut failures) = few(&run, subjects, options, report);
+        failures.iter_mut().for_each(|failure| failure.rerun = options.again(failure, false));
+        tell(&groups, &failures, true, observer);
+    }
+    Ok(Scouted { run, chunk })
+}
+
+/// What the scouts of a group have come to. With this few cases only a single wrong value tells anything.
+pub(crate) fn few(
+    run: &RowRun<'_>,
+    subjects: &[Subject],
+    options: &Options,
+    report: &mut Report,
+) -> (Vec<Group>, Vec<Failure>) {
+    let (mut groups, failures) = run.groups(subjects, options, &mut report.timing);
+    groups.retain(|group| group.totals.cases > 0);
+    for group in &mut groups {
+        group.problems.clear();
+        group.totals.failed_groups = 0;
+    }
+    (groups, failures)
 }

@@ -8,7 +8,7 @@ use crate::turn::{CHUNK, Turn, cases_of};
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::select::{CaseRef, Member, Selected};
 use lightmeter_judge::chunk::{self, Chunk};
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::Scope;
 use std::time::Instant;
@@ -22,6 +22,8 @@ pub(crate) struct RowGroup<'a> {
     turn: usize,
     members: Vec<&'a Member>,
     rows: Vec<Selected>,
+    /// The cases that are judged before all others.
+    scouted: Vec<(usize, CaseRef)>,
 }
 
 impl<'a> RowGroup<'a> {
@@ -41,12 +43,24 @@ impl<'a> RowGroup<'a> {
         let rows =
             |(chosen, member): (&Selected, &&Member)| if is_asked { chosen.clone() } else { chosen.rows(member) };
         let rows = group.iter().zip(&members).map(rows).collect();
-        Some(Self { turn: *place, members, rows })
+        Some(Self { turn: *place, members, rows, scouted: vec![] })
     }
 
-    /// The cases of its chunks in turn, each with its formula's place among the members.
+    /// Has a few cases of each formula judged before all others: its hard cases and the first random ones, of a group so many in all.
+    pub(crate) fn scout(&mut self, random: usize) {
+        let few = |rows: &Selected| rows.few((random / self.members.len()).max(1));
+        self.scouted = cases_of(&self.rows.iter().map(few).collect::<Vec<_>>()).collect();
+    }
+
+    /// The cases that are judged before all others, each with its formula's place among the members.
+    pub(crate) fn scouted(&self) -> &[(usize, CaseRef)] {
+        &self.scouted
+    }
+
+    /// The other cases of its chunks in turn, each with its formula's place among the members.
     pub(crate) fn chunks(&self) -> impl Iterator<Item = Vec<(usize, CaseRef)>> + '_ {
-        let mut cases = cases_of(&self.rows);
+        let mut scouted: HashSet<(usize, CaseRef)> = self.scouted.iter().copied().collect();
+        let mut cases = cases_of(&self.rows).filter(move |case| scouted.is_empty() || !scouted.remove(case));
         std::iter::from_fn(move || Some(cases.by_ref().take(CHUNK).collect()).filter(|next: &Vec<_>| !next.is_empty()))
     }
 
@@ -178,12 +192,36 @@ mod tests {
     use lightmeter_catalogue::select::{Random, catalogue};
 
     #[test]
+    fn what_is_scouted_is_in_no_chunk_and_all_else_is_in_one() {
+        let catalogue = catalogue();
+        let place = |id: &str| catalogue.iter().position(|member| member.spec.id == id).expect("it is there");
+        let members = ["fog/exp", "fog/linear"].map(place);
+        let rows: Vec<Selected> = (members.iter())
+            .map(|&member| {
+                let mut rows = Selected::whole(member, Random::First(CHUNK as u64));
+                rows.hard = vec![0, 2];
+                rows
+            })
+            .collect();
+        let whole: Vec<(usize, CaseRef)> = cases_of(&rows).collect();
+        let members = members.iter().map(|&member| &catalogue[member]).collect();
+        let mut group = RowGroup { turn: 0, members, rows, scouted: vec![] };
+        group.scout(32);
+        assert_eq!(group.scouted().len(), 2 * (2 + 16));
+        let mut all: Vec<(usize, CaseRef)> = group.scouted().iter().copied().chain(group.chunks().flatten()).collect();
+        all.sort_unstable();
+        let mut expected = whole;
+        expected.sort_unstable();
+        assert_eq!(all, expected);
+    }
+
+    #[test]
     fn chunks_come_in_turn_with_what_is_legal_and_those_that_nobody_took_are_left() {
         let catalogue = catalogue();
         let place = |id: &str| catalogue.iter().position(|member| member.spec.id == id).expect("it is there");
         let group = |(turn, id): (usize, &str)| {
             let rows = vec![Selected::whole(place(id), Random::First(CHUNK as u64 + 1))];
-            RowGroup { turn, members: vec![&catalogue[place(id)]], rows }
+            RowGroup { turn, members: vec![&catalogue[place(id)]], rows, scouted: vec![] }
         };
         let groups: Vec<RowGroup<'_>> = [(3, "color/to-unorm8"), (1, "color/from-unorm8")].map(group).into();
         let options = Options::new(crate::device::Code::default());

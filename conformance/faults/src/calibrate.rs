@@ -9,6 +9,7 @@ use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::select::{CaseRef, Member, Shard, catalogue, select};
 use lightmeter_document::event::Stop;
 use lightmeter_document::selftest::{OffBy, Resolution};
+use lightmeter_judge::diagnose::Answered;
 use lightmeter_judge::{Outcome, judge};
 use rayon::prelude::*;
 
@@ -76,7 +77,17 @@ impl<'a> Scale<'a> {
         for (inputs, out) in inputs.iter().zip(right.chunks_exact_mut(outputs)) {
             member.formula.embedded(inputs, out);
         }
-        let design = Design::new(member, inputs.iter().map(Vec::as_slice), profile);
+        let rows = inputs.iter().zip(reference.chunks_exact(outputs)).zip(legal.chunks_exact(outputs));
+        let answered = rows.map(|((inputs, reference), legal)| Answered {
+            case: CaseRef::Random(0),
+            inputs,
+            values: &[],
+            reference,
+            legal,
+            is_wrong: false,
+        });
+        let answered: Vec<Answered<'_>> = answered.collect();
+        let design = Design::new(member, &answered);
         Self { member, inputs, reference, legal, right, design }
     }
 

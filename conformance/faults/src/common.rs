@@ -1,7 +1,6 @@
 //! What failing cases have in common, where no mistake explains them.
 
 use super::factor::digits;
-use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::Answered;
 
@@ -19,17 +18,12 @@ pub(super) fn share(part: usize, whole: usize) -> f64 {
 }
 
 /// In words: the outputs that fail, on which side, and where in an input's range.
-pub(super) fn in_common(
-    member: &Member,
-    profile: &Profile,
-    failing: &[Answered<'_>],
-    passing: &[Answered<'_>],
-) -> Vec<String> {
+pub(super) fn in_common(member: &Member, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Vec<String> {
     let mut told = vec![];
-    if let Some(order) = order_of(member, profile, failing) {
+    if let Some(order) = order_of(member, failing) {
         return vec![order];
     }
-    let wrong = wrong_numbers(member, profile, failing);
+    let wrong = wrong_numbers(failing);
     told.extend(outputs_of(member, &wrong));
     told.extend(side_of(&wrong));
     told.extend(range_of(member, failing, passing));
@@ -37,7 +31,7 @@ pub(super) fn in_common(
 }
 
 /// The order of the outputs in which every failing answer is legal: whoever answers has them in that one.
-fn order_of(member: &Member, profile: &Profile, failing: &[Answered<'_>]) -> Option<String> {
+fn order_of(member: &Member, failing: &[Answered<'_>]) -> Option<String> {
     /// Answers that are legal in another order by chance are fewer.
     const LEAST: usize = 4;
     let outputs = member.spec.outputs;
@@ -46,9 +40,8 @@ fn order_of(member: &Member, profile: &Profile, failing: &[Answered<'_>]) -> Opt
         *end += output.shape.components();
         Some(*end)
     }));
-    let mut legal = vec![Accept::ANY; member.spec.output_len()];
-    let mut is_legal = |order: &[usize], row: &Answered<'_>| {
-        member.formula.promised_interval(member.spec.kind, row.inputs, profile, &mut legal);
+    let is_legal = |order: &[usize], row: &Answered<'_>| {
+        let legal = row.legal;
         let places = order.iter().flat_map(|&output| starts[output]..starts[output + 1]);
         let decided = legal.iter().any(|interval| !interval.contains(f64::INFINITY));
         decided && places.zip(row.values).all(|(place, &value)| legal[place].contains(value.into()))
@@ -84,14 +77,10 @@ struct WrongNumber {
     reference: f64,
 }
 
-fn wrong_numbers(member: &Member, profile: &Profile, failing: &[Answered<'_>]) -> Vec<WrongNumber> {
-    let outputs = member.spec.output_len();
-    let (mut legal, mut reference) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
+fn wrong_numbers(failing: &[Answered<'_>]) -> Vec<WrongNumber> {
     let mut wrong = vec![];
     for row in failing {
-        member.formula.promised_interval(member.spec.kind, row.inputs, profile, &mut legal);
-        member.formula.reference(row.inputs, &mut reference);
-        for (place, ((&value, legal), &reference)) in row.values.iter().zip(&legal).zip(&reference).enumerate() {
+        for (place, ((&value, legal), &reference)) in row.values.iter().zip(row.legal).zip(row.reference).enumerate() {
             if !legal.contains(value.into()) {
                 wrong.push(WrongNumber { place, value: value.into(), reference });
             }

@@ -51,7 +51,7 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Fo
     let fits = |row: &&Answered<'_>| row.inputs.len() == spec.input_len() && row.values.len() == spec.output_len();
     let failing: Vec<Answered<'_>> = rows.iter().filter(fits).filter(|row| row.is_wrong).copied().collect();
     let passing: Vec<Answered<'_>> = rows.iter().filter(fits).filter(|row| !row.is_wrong).copied().collect();
-    let right = Right::new(member, profile, &failing, &passing);
+    let right = Right::new(spec.output_len(), &failing, &passing);
     let mut trial = Trial { member, profile, failing: &failing, passing: &passing, right, found: vec![] };
     if !failing.is_empty() {
         trial.singles();
@@ -80,7 +80,7 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Fo
     let diagnosis = Diagnosis {
         failing: failing.len() as u64,
         looked_at: failing.len() as u64,
-        in_common: if told.is_empty() { in_common(member, profile, &failing, &passing) } else { vec![] },
+        in_common: if told.is_empty() { in_common(member, &failing, &passing) } else { vec![] },
         outputs: trial.outputs(explanations.first()),
         explanations: told.into_iter().map(|(_, one)| one).collect(),
         telling,
@@ -135,8 +135,7 @@ impl Trial<'_> {
     fn pairs(&mut self) {
         let concerned = concerned(self.member);
         let prior = 2.0 * bits_of(concerned.len());
-        let near: Vec<Near> =
-            self.probes(PAIR_PROBES).filter_map(|row| Near::new(self.member, row, self.profile)).collect();
+        let near: Vec<Near> = self.probes(PAIR_PROBES).filter_map(|row| Near::new(self.member, row)).collect();
         let paired = paired(self.member);
         for (place, first) in paired.iter().enumerate() {
             for second in &paired[place + 1..] {
@@ -158,9 +157,7 @@ impl Trial<'_> {
     fn parameters(&mut self) {
         if !matches!(self.member.spec.kind, Kind::Raster(_)) {
             let right = Variation::right(self.member);
-            factor::candidates(&right, self.failing, self.profile)
-                .into_iter()
-                .for_each(|scaled| self.try_scaled(&right, scaled));
+            factor::candidates(&right, self.failing).into_iter().for_each(|scaled| self.try_scaled(&right, scaled));
         }
     }
 
@@ -170,10 +167,10 @@ impl Trial<'_> {
         if matches!(spec.kind, Kind::Raster(_)) {
             return;
         }
-        let (member, profile) = (self.member, self.profile);
+        let member = self.member;
         let variations: Vec<Variation<'_>> =
             paired(member).iter().filter_map(|fault| Variation::of(member, &[*fault])).collect();
-        for (variation, scaled) in factor::nearest(&variations, self.failing, profile) {
+        for (variation, scaled) in factor::nearest(&variations, self.failing) {
             self.try_scaled(variation, scaled);
         }
     }
@@ -209,7 +206,7 @@ impl Trial<'_> {
         let best = best.and_then(|best| Some((best, self.variation(best)?)));
         let mut legal = vec![Accept::ANY; spec.output_len()];
         let mut counts = vec![[0, 0]; spec.outputs.len()];
-        for (row, right) in self.failing.iter().zip(self.right.legal.chunks(spec.output_len().max(1))) {
+        for row in self.failing {
             if let Some((best, variation)) = &best {
                 self.legal(best, variation, row, &mut legal);
             }
@@ -218,7 +215,7 @@ impl Trial<'_> {
                 let of = start..start + output.shape.components();
                 start = of.end;
                 let is_within = |legal: &[Accept]| of.clone().all(|k| legal[k].contains(row.values[k].into()));
-                let is_wrong = !is_within(right);
+                let is_wrong = !is_within(row.legal);
                 *failing += u64::from(is_wrong);
                 *explained += u64::from(is_wrong && best.is_some() && is_within(&legal));
             }
@@ -290,13 +287,12 @@ impl Trial<'_> {
         let mut tally = Tally::default();
         let [most, most_of_random] = self.most_off();
         let (mut excluded, mut of_random) = (0, 0);
-        let right = self.right.legal.chunks(outputs);
         tally.by_output = vec![0.0; outputs];
         tally.varies = vec![false; outputs];
-        for ((row, chance), right) in self.failing.iter().zip(self.right.bits.chunks(outputs)).zip(right) {
+        for (row, chance) in self.failing.iter().zip(self.right.bits.chunks(outputs)) {
             tried.interval(row.inputs, self.profile, &mut legal);
             tried.evaluate(row.inputs, &mut own);
-            tally.foretold.take(true, is_wrong(&own, right));
+            tally.foretold.take(true, is_wrong(&own, row.legal));
             let is_own = |place: usize| {
                 let (a, b) = (row.values[place], own[place]);
                 a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
@@ -338,11 +334,10 @@ impl Trial<'_> {
             false => self.most_off().into(),
         };
         let (mut contradicted, mut of_random, mut missing) = (0, 0, 0);
-        let right = self.right.legal.chunks(outputs).skip(self.failing.len());
-        for (row, right) in self.passing.iter().zip(right) {
+        for row in self.passing {
             tried.interval(row.inputs, self.profile, &mut legal);
             tried.evaluate(row.inputs, &mut own);
-            let (would_fail, is_contradicted) = (is_wrong(&own, right), fit(row.values, &legal) == Fit::Outside);
+            let (would_fail, is_contradicted) = (is_wrong(&own, row.legal), fit(row.values, &legal) == Fit::Outside);
             tally.foretold.take(false, would_fail);
             for (place, varies) in tally.varies.iter_mut().enumerate() {
                 *varies |= own[place].to_bits() != row.values[place].to_bits();
@@ -404,13 +399,11 @@ struct Near {
 }
 
 impl Near {
-    fn new(member: &Member, row: &Answered<'_>, profile: &Profile) -> Option<Self> {
+    fn new(member: &Member, row: &Answered<'_>) -> Option<Self> {
         if matches!(member.spec.kind, Kind::Raster(_)) {
             return None;
         }
-        let mut legal = vec![Accept::ANY; row.values.len()];
-        member.formula.interval(row.inputs, profile, &mut legal);
-        let reach = legal.iter().zip(row.values).map(|(legal, &value)| {
+        let reach = row.legal.iter().zip(row.values).map(|(legal, &value)| {
             let reach = 4096.0 * legal.width() + f64::from(value).abs() / 64.0;
             if reach.is_finite() { reach } else { f64::INFINITY }
         });
@@ -483,35 +476,32 @@ mod tests {
     use super::*;
     use crate::fault::{Fault, formulas};
     use lightmeter_arithmetic::profile::WGSL;
+    use lightmeter_catalogue::cases::Stage;
     use lightmeter_catalogue::select::CaseRef;
+    use lightmeter_judge::devices::Known;
+    use lightmeter_judge::formula::evaluated;
+    use lightmeter_judge::kept::KeptRow;
     use lightmeter_judge::{Outcome, judge};
 
     /// The diagnosis of an implementation of a formula, of 256 cases.
     fn diagnosis(id: &str, implementation: impl Fn(&Member, &[f32], &mut [f32])) -> (FormulaDiagnosis, Vec<Vec<f32>>) {
         let member = formulas().iter().find(|member| member.spec.id == id).expect(id);
-        let outputs = member.spec.output_len();
-        let (mut inputs, mut values, mut wrong) = (vec![], vec![], vec![]);
-        for k in 0..256 {
-            let (mut row, mut out) = (vec![], vec![0.0; outputs]);
+        let kept = |k| {
+            let (mut row, mut out) = (vec![], vec![0.0; member.spec.output_len()]);
             member.inputs(CaseRef::Random(k), 1, &mut row);
             implementation(member, &row, &mut out);
-            let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
-            member.formula.reference(&row, &mut reference);
-            member.formula.interval(&row, &WGSL, &mut legal);
-            let fails = |k: usize| judge(out[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail;
-            wrong.push((0..outputs).any(fails));
-            inputs.push(row);
-            values.push(out);
-        }
-        let rows: Vec<Answered<'_>> = (0..256)
-            .map(|k| Answered {
-                case: CaseRef::Random(k as u64),
-                inputs: &inputs[k],
-                values: &values[k],
-                is_wrong: wrong[k],
-            })
-            .collect();
-        (diagnose(member, &rows, &WGSL), inputs)
+            evaluated(member, row, out, (Stage::Compute, &Known::default(), &WGSL))
+        };
+        let kept: Vec<KeptRow> = (0..256).map(kept).collect();
+        let rows = kept.iter().zip(0..).map(|(row, k)| row.answers(CaseRef::Random(k), is_wrong(row)));
+        let found = diagnose(member, &rows.collect::<Vec<_>>(), &WGSL);
+        (found, kept.into_iter().map(|row| row.inputs).collect())
+    }
+
+    fn is_wrong(row: &KeptRow) -> bool {
+        let KeptRow { values, reference, legal, .. } = row;
+        let fails = |k: usize| judge(values[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail;
+        (0..values.len()).any(fails)
     }
 
     fn making(names: &'static [&'static str]) -> impl Fn(&Member, &[f32], &mut [f32]) {
@@ -601,38 +591,16 @@ mod tests {
     fn a_naive_form_is_told_and_no_number_is_explained_by_what_leaves_all_open() {
         let member = formulas().iter().find(|member| member.spec.id == "lighting/blinn-stable").expect("it is there");
         let naive = formulas().iter().find(|member| member.spec.id == "lighting/blinn").expect("it is there");
-        let outputs = member.spec.output_len();
-        let cases = (0..member.spec.hard.len()).map(CaseRef::Hard);
-        let inputs: Vec<Vec<f32>> = cases
-            .map(|case| {
-                let mut row = vec![];
-                member.inputs(case, 1, &mut row);
-                row
-            })
-            .collect();
         let diagnosis = |answer: &dyn Fn(&[f32], &mut [f32])| {
-            let values: Vec<Vec<f32>> = (inputs.iter())
-                .map(|row| {
-                    let mut out = vec![0.0; outputs];
-                    answer(row, &mut out);
-                    out
-                })
-                .collect();
-            let is_wrong = |row: &[f32], values: &[f32]| {
-                let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
-                member.formula.reference(row, &mut reference);
-                member.formula.interval(row, &WGSL, &mut legal);
-                (0..outputs).any(|k| judge(values[k].to_bits(), reference[k], &legal[k]).outcome == Outcome::Fail)
+            let kept = |place| {
+                let (mut row, mut out) = (vec![], vec![0.0; member.spec.output_len()]);
+                member.inputs(CaseRef::Hard(place), 1, &mut row);
+                answer(&row, &mut out);
+                evaluated(member, row, out, (Stage::Compute, &Known::default(), &WGSL))
             };
-            let rows = inputs.iter().zip(&values);
-            let rows: Vec<Answered<'_>> = rows
-                .enumerate()
-                .map(|(place, (inputs, values))| {
-                    let is_wrong = is_wrong(inputs, values);
-                    Answered { case: CaseRef::Hard(place), inputs, values, is_wrong }
-                })
-                .collect();
-            diagnose(member, &rows, &WGSL)
+            let kept: Vec<KeptRow> = (0..member.spec.hard.len()).map(kept).collect();
+            let rows = kept.iter().enumerate().map(|(place, row)| row.answers(CaseRef::Hard(place), is_wrong(row)));
+            diagnose(member, &rows.collect::<Vec<_>>(), &WGSL)
         };
         let found = diagnosis(&|row, out| naive.formula.embedded(row, out));
         assert!(found.failing > 1 && found.explanations[0].faults == ["naive-form"], "{}", found.diagnosis.to_string());
@@ -713,7 +681,8 @@ mod tests {
         let (found, _) = diagnosis("lighting/spot", |_, _, out| out.fill(f32::NAN));
         assert!(found.failing == 256 && found.explanations.is_empty(), "{}", found.diagnosis.to_string());
         let member = formulas().iter().find(|member| member.spec.id == "fog/exp").expect("fog/exp");
-        let short = [Answered { case: CaseRef::Hard(0), inputs: &[1.0], values: &[], is_wrong: true }];
+        let short = KeptRow { inputs: vec![1.0], values: vec![], reference: vec![], legal: vec![] };
+        let short = [short.answers(CaseRef::Hard(0), true)];
         assert_eq!(diagnose(member, &short, &WGSL).diagnosis.to_string(), "nothing fails");
         assert_eq!(diagnose(member, &[], &WGSL).diagnosis.to_string(), "nothing fails");
     }

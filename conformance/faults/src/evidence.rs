@@ -1,8 +1,7 @@
 //! How much answers tell of how they came about, in bits.
 
 use super::common::share;
-use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
-use lightmeter_catalogue::select::Member;
+use lightmeter_arithmetic::{Accept, F32, Format as _};
 use lightmeter_judge::diagnose::Answered;
 use std::collections::HashSet;
 
@@ -40,8 +39,6 @@ pub(super) const EXCLUDED: f64 = 100.0;
 
 /// What the right formula says of the answers.
 pub(super) struct Right {
-    /// What is legal of the failing answers, then of the passing ones.
-    pub(super) legal: Vec<Accept>,
     /// How many bits it takes to state each number of a failing answer when only the right formula is known: where the number is right, the
     /// bits that its interval leaves open; where it is wrong, all of its bits.
     pub(super) bits: Vec<f64>,
@@ -50,16 +47,11 @@ pub(super) struct Right {
 }
 
 impl Right {
-    pub(super) fn new(member: &Member, profile: &Profile, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Self {
-        let outputs = member.spec.output_len();
-        let mut legal = vec![Accept::ANY; outputs * (failing.len() + passing.len())];
-        for (row, legal) in failing.iter().chain(passing).zip(legal.chunks_mut(outputs)) {
-            member.formula.promised_interval(member.spec.kind, row.inputs, profile, legal);
-        }
+    pub(super) fn new(outputs: usize, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Self {
         let mut seen: Vec<HashSet<u32>> = vec![HashSet::new(); outputs];
         let mut bits = vec![];
-        for (row, legal) in failing.iter().zip(legal.chunks(outputs)) {
-            for ((&value, legal), seen) in row.values.iter().zip(legal).zip(&mut seen) {
+        for row in failing {
+            for ((&value, legal), seen) in row.values.iter().zip(row.legal).zip(&mut seen) {
                 // A wrong number that is 0 or 1, or that has occurred before, is weak evidence.
                 let is_plain =
                     value.to_bits() << 1 == 0 || value.to_bits() == 1.0_f32.to_bits() || !seen.insert(value.to_bits());
@@ -75,7 +67,7 @@ impl Right {
             let first = all.next()?;
             all.all(|other| other == first).then_some(first)
         };
-        Self { legal, bits, constant: (0..outputs).map(constant).collect() }
+        Self { bits, constant: (0..outputs).map(constant).collect() }
     }
 }
 

@@ -25,10 +25,7 @@ const MOST_PASSING: usize = 24;
 #[must_use]
 pub fn explain(report: &Report, profile: &Profile) -> Vec<Explained> {
     let mut explained = explain_failures(&report.failures, &report.groups, profile);
-    // A case whose inputs were held is another one than its id says.
-    if report.compared_by.as_ref().is_none_or(|by| by.choice.held.is_empty()) {
-        explained.extend(explain_worst(&report.groups, report.seed, profile));
-    }
+    explained.extend(explain_worst(&report.groups, profile));
     explained
 }
 
@@ -56,7 +53,7 @@ fn explain_failures(failures: &[Failure], groups: &[Group], profile: &Profile) -
 
 /// What explains the case that comes nearest to what is illegal, of each formula that passes; nothing where there are more of them than anyone
 /// looks at one by one.
-fn explain_worst(groups: &[Group], seed: u64, profile: &Profile) -> Vec<Explained> {
+fn explain_worst(groups: &[Group], profile: &Profile) -> Vec<Explained> {
     let failing: HashSet<&str> =
         groups.iter().filter(|group| group.totals.failed > 0).map(|group| group.id.as_str()).collect();
     let mut formulas: Vec<&Group> = vec![];
@@ -72,13 +69,13 @@ fn explain_worst(groups: &[Group], seed: u64, profile: &Profile) -> Vec<Explaine
     }
     let catalogue = catalogue();
     let explained = |group: &Group| {
-        let id = group.worst.as_ref()?;
+        let (id, answer) = (group.worst.as_ref()?, group.worst_answer.as_ref()?);
         let member = catalogue.iter().find(|member| member.spec.id == group.id)?;
-        let mut inputs = vec![];
-        member.inputs(member.case(id)?, seed, &mut inputs);
-        // The output that comes nearest, where it is known.
-        let output = group.worst_answer.as_ref().map_or("", |answer| &answer.output);
-        let explained = explained_case(id, member, &inputs, output, &[], profile);
+        let inputs = row(&answer.inputs);
+        if inputs.len() != member.spec.input_len() {
+            return None;
+        }
+        let explained = explained_case(id, member, &inputs, &answer.output, &[], profile);
         let inputs = by_name(member, &inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default());
         Some(Explained { inputs, units: units(member), ..explained })
     };
@@ -89,8 +86,7 @@ fn explain_worst(groups: &[Group], seed: u64, profile: &Profile) -> Vec<Explaine
 fn inputs_of(failure: &Failure, member: &Member) -> Option<Vec<f32>> {
     let mut row = vec![];
     if let Some(answer) = &failure.answer {
-        #[expect(clippy::cast_possible_truncation, reason = "inputs are f32, widened")]
-        row.extend(answer.inputs.iter().map(|x| x.0 as f32));
+        row = self::row(&answer.inputs);
     } else {
         for input in member.spec.inputs {
             let value = failure.inputs_hex.get(input.name)?;
@@ -102,6 +98,12 @@ fn inputs_of(failure: &Failure, member: &Member) -> Option<Vec<f32>> {
         }
     }
     (row.len() == member.spec.input_len()).then_some(row)
+}
+
+/// Inputs of a document as a row.
+#[expect(clippy::cast_possible_truncation, reason = "inputs are f32, widened")]
+fn row(inputs: &[Number]) -> Vec<f32> {
+    inputs.iter().map(|x| x.0 as f32).collect()
 }
 
 fn explained_case(

@@ -5,7 +5,6 @@ use super::row::Arithmetic;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::{Domain, Spec};
-use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::Answered;
 use lightmeter_reference::Real as _;
 use serde::Serialize;
@@ -122,8 +121,8 @@ pub(super) fn parameters(spec: &Spec) -> impl Iterator<Item = (&'static str, Ran
 }
 
 /// Factors of each parameter that would explain the answers best, whether they do or not.
-pub(super) fn candidates(variation: &Variation<'_>, failing: &[Answered<'_>], profile: &Profile) -> Vec<Scaled> {
-    let rows = rows(variation.member, failing, profile, ROWS);
+pub(super) fn candidates(variation: &Variation<'_>, failing: &[Answered<'_>]) -> Vec<Scaled> {
+    let rows = rows(failing, ROWS);
     if rows.is_empty() {
         return vec![];
     }
@@ -144,11 +143,8 @@ pub(super) fn candidates(variation: &Variation<'_>, failing: &[Answered<'_>], pr
 pub(super) fn nearest<'a, 'b>(
     variations: &'b [Variation<'a>],
     failing: &[Answered<'_>],
-    profile: &Profile,
 ) -> Vec<(&'b Variation<'a>, Scaled)> {
-    let Some(first) = variations.first() else { return vec![] };
-    let few = rows(first.member, failing, profile, FEW_ROWS);
-    let all = rows(first.member, failing, profile, ROWS);
+    let (few, all) = (rows(failing, FEW_ROWS), rows(failing, ROWS));
     if few.is_empty() {
         return vec![];
     }
@@ -179,9 +175,9 @@ fn cheapest<'a, 'b>(
 }
 
 /// So many of the failing cases, evenly spread.
-fn rows(member: &Member, failing: &[Answered<'_>], profile: &Profile, count: usize) -> Vec<FactorRow> {
+fn rows(failing: &[Answered<'_>], count: usize) -> Vec<FactorRow> {
     let some = failing.iter().step_by((failing.len() / count).max(1)).take(count);
-    some.filter_map(|row| FactorRow::new(member, row, profile)).collect()
+    some.filter_map(FactorRow::new).collect()
 }
 
 /// An answer with the size of what its error is measured by.
@@ -192,10 +188,8 @@ struct FactorRow {
 }
 
 impl FactorRow {
-    fn new(member: &Member, row: &Answered<'_>, profile: &Profile) -> Option<Self> {
-        let mut legal = vec![Accept::ANY; member.spec.output_len()];
-        member.formula.interval(row.inputs, profile, &mut legal);
-        let tolerance = legal.iter().zip(row.values).map(|(legal, &value)| {
+    fn new(row: &Answered<'_>) -> Option<Self> {
+        let tolerance = row.legal.iter().zip(row.values).map(|(legal, &value)| {
             let half = if legal.is_any() { f64::INFINITY } else { legal.width() * 0.5 };
             half.max(F32::ulp(f64::from(value).abs().max(1e-6)))
         });

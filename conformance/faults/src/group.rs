@@ -2,7 +2,6 @@
 //! derivatives, so that a parameter that is a little off is told from rounding, and named.
 
 use super::factor::digits;
-use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::selftest::{OffBy, Systematic};
@@ -163,10 +162,10 @@ impl Clusters {
 
 impl Design {
     /// Works out what does not depend on the answers, on all cores.
-    pub(super) fn new<'a>(member: &Member, rows: impl Iterator<Item = &'a [f32]>, profile: &Profile) -> Self {
-        let rows: Vec<&[f32]> = rows.collect();
-        let parts: Vec<Self> = rows.par_chunks(TASK).map(|rows| Self::part(member, rows, profile)).collect();
-        let mut design = Self::part(member, &[], profile);
+    pub(super) fn new(member: &Member, answered: &[Answered<'_>]) -> Self {
+        let parts: Vec<Self> = answered.par_chunks(TASK).map(|rows| Self::part(member, rows)).collect();
+        let rows: Vec<&[f32]> = answered.iter().map(|row| row.inputs).collect();
+        let mut design = Self::part(member, &[]);
         for part in parts {
             design.reference.extend(part.reference);
             design.weight.extend(part.weight);
@@ -181,7 +180,7 @@ impl Design {
     }
 
     /// The same of some rows.
-    fn part(member: &Member, rows: &[&[f32]], profile: &Profile) -> Self {
+    fn part(member: &Member, rows: &[Answered<'_>]) -> Self {
         let spec = &member.spec;
         let outputs = spec.output_len();
         let parameters = parameters(spec);
@@ -194,14 +193,10 @@ impl Design {
             sizes: vec![],
             clusters: vec![],
         };
-        let mut legal = vec![Accept::ANY; outputs];
-        let mut reference = vec![0.0; outputs];
-        for row in rows {
-            member.formula.reference(row, &mut reference);
-            member.formula.promised_interval(spec.kind, row, profile, &mut legal);
+        for &Answered { inputs: row, reference, legal, .. } in rows {
             let slopes = member.formula.derivatives(row);
             let start = design.reference.len();
-            for (&reference, legal) in reference.iter().zip(&legal) {
+            for (&reference, legal) in reference.iter().zip(legal) {
                 let half = legal.width() * 0.5;
                 let counts = !legal.is_any() && half > 0.0 && half.is_finite() && reference.is_finite();
                 design.reference.push(reference);
@@ -420,17 +415,17 @@ fn says(parameter: &Parameter, amount: f64) -> String {
 /// What a renderer's answers to one formula show together; `None` where nothing, and of fewer than [`LEAST_VALUES`] values or
 /// of a rasteriser.
 #[must_use]
-pub fn group_verdict(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Option<Systematic> {
+pub fn group_verdict(member: &Member, rows: &[Answered<'_>]) -> Option<Systematic> {
     let spec = &member.spec;
     if matches!(spec.kind, Kind::Raster(_)) {
         return None;
     }
     let fits = |row: &&Answered<'_>| row.inputs.len() == spec.input_len() && row.values.len() == spec.output_len();
-    let rows: Vec<&Answered<'_>> = rows.iter().filter(fits).collect();
+    let rows: Vec<Answered<'_>> = rows.iter().filter(fits).copied().collect();
     if rows.len() * spec.output_len() < LEAST_VALUES {
         return None;
     }
-    let design = Design::new(member, rows.iter().map(|row| row.inputs), profile);
+    let design = Design::new(member, &rows);
     let values: Vec<f32> = rows.iter().flat_map(|row| row.values.iter().copied()).collect();
     design.verdict(&values)
 }
@@ -442,7 +437,11 @@ mod tests {
     use lightmeter_arithmetic::RandomLegal;
     use lightmeter_arithmetic::profile::WGSL;
     use lightmeter_arithmetic::random::seed;
+    use lightmeter_catalogue::cases::Stage;
     use lightmeter_catalogue::select::CaseRef;
+    use lightmeter_judge::devices::Known;
+    use lightmeter_judge::formula::evaluated;
+    use lightmeter_judge::kept::KeptRow;
     use lightmeter_reference::Real as _;
 
     fn rows_of(member: &Member, cases: u64) -> Vec<Vec<f32>> {
@@ -452,6 +451,15 @@ mod tests {
             row
         };
         (0..cases).map(row).collect()
+    }
+
+    /// What answers to random cases show together.
+    fn verdict(member: &Member, rows: &[Vec<f32>], values: &[Vec<f32>]) -> Option<Systematic> {
+        let by = (Stage::Compute, &Known::default(), &WGSL);
+        let kept = rows.iter().zip(values).map(|(row, values)| evaluated(member, row.clone(), values.clone(), by));
+        let kept: Vec<KeptRow> = kept.collect();
+        let rows: Vec<Answered<'_>> = kept.iter().map(|row| row.answers(CaseRef::Random(0), false)).collect();
+        group_verdict(member, &rows)
     }
 
     #[test]
@@ -467,14 +475,7 @@ mod tests {
             };
             rows.iter().map(answer).collect::<Vec<_>>()
         };
-        let verdict = |values: &[Vec<f32>]| {
-            let rows: Vec<Answered<'_>> = rows
-                .iter()
-                .zip(values)
-                .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
-                .collect();
-            group_verdict(member, &rows, &WGSL)
-        };
+        let verdict = |values: &[Vec<f32>]| verdict(member, &rows, values);
         assert_eq!(verdict(&answers(&|_| {})), None);
         let named = verdict(&answers(&|row| row[3] *= 1.000_003)).expect("a systematic error");
         assert_eq!((named.parameter.as_str(), named.error), ("density", OffBy::Scale), "{named:?}");
@@ -488,12 +489,8 @@ mod tests {
     fn a_rounded_constant_is_no_parameter_that_is_off() {
         let member = formulas().iter().find(|member| member.spec.id == "color/from-unorm8").expect("it is a formula");
         let rows = rows_of(member, 65_536);
-        let values: Vec<[f32; 1]> = rows.iter().map(|row| [row[0] * (1.0 / 255.0)]).collect();
-        let rows = rows.iter().zip(&values);
-        let rows: Vec<Answered<'_>> = rows
-            .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
-            .collect();
-        assert_eq!(group_verdict(member, &rows, &WGSL), None);
+        let values: Vec<Vec<f32>> = rows.iter().map(|row| vec![row[0] * (1.0 / 255.0)]).collect();
+        assert_eq!(verdict(member, &rows, &values), None);
     }
 
     /// Both constants of a state are rounded in a way of their own, and ten thousand cases have one of them.
@@ -510,11 +507,7 @@ mod tests {
                     out
                 };
                 let values: Vec<Vec<f32>> = rows.iter().map(answer).collect();
-                let rows = rows.iter().zip(&values);
-                let rows: Vec<Answered<'_>> = rows
-                    .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
-                    .collect();
-                assert_eq!(group_verdict(member, &rows, &WGSL), None, "{id}");
+                assert_eq!(verdict(member, &rows, &values), None, "{id}");
             }
         }
     }
@@ -533,11 +526,7 @@ mod tests {
                 out.iter().map(|x| x.value as f32).collect::<Vec<f32>>()
             };
             let values: Vec<Vec<f32>> = rows.iter().map(answer).collect();
-            let rows = rows.iter().zip(&values);
-            let rows: Vec<Answered<'_>> = rows
-                .map(|(inputs, values)| Answered { case: CaseRef::Random(0), inputs, values, is_wrong: false })
-                .collect();
-            assert_eq!(group_verdict(member, &rows, &WGSL), None, "{}", member.spec.id);
+            assert_eq!(verdict(member, &rows, &values), None, "{}", member.spec.id);
         }
     }
 }

@@ -21,8 +21,8 @@ impl Diagnose for Mistakes {
         Diagnosis { failing, ..found.diagnosis }
     }
 
-    fn systematic(&self, member: &Member, answered: &[Answered<'_>], profile: &Profile) -> Option<Problem> {
-        let found = group_verdict(member, answered, profile)?;
+    fn systematic(&self, member: &Member, answered: &[Answered<'_>]) -> Option<Problem> {
+        let found = group_verdict(member, answered)?;
         Some(Problem::new(ProblemKind::Systematic, found.says))
     }
 

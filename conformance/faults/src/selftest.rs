@@ -139,7 +139,9 @@ impl<'a> Bench<'a> {
         let rows = self.inputs.iter().zip(values).enumerate();
         rows.map(|(place, (inputs, values))| {
             let case = self.cases[place];
-            Answered { case, inputs, values, is_wrong: self.is_wrong(place, values) }
+            let of = place * self.outputs()..(place + 1) * self.outputs();
+            let (reference, legal) = (&self.reference[of.clone()], &self.legal[of]);
+            Answered { case, inputs, values, reference, legal, is_wrong: self.is_wrong(place, values) }
         })
         .collect()
     }
@@ -210,7 +212,7 @@ impl<'a> Bench<'a> {
                 // Hard cases are no sample of anything.
                 let random = rows.iter().zip(&self.cases).filter(|(_, case)| matches!(case, CaseRef::Random(_)));
                 let random: Vec<Answered<'_>> = random.map(|(row, _)| *row).collect();
-                clean.systematic = group_verdict(self.member, &random, self.options.profile);
+                clean.systematic = group_verdict(self.member, &random);
             }
         };
         take(self.answers(|inputs, out| self.member.formula.embedded(inputs, out)), true);

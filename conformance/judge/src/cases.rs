@@ -268,7 +268,10 @@ impl CaseTally {
     /// The cases that did not pass, by what became of them: each by the end of its id, and cases in a row as `000003..000017`.
     fn not_passed(&self, members: &[&Member], group: &str) -> BTreeMap<String, Vec<String>> {
         let mut all: BTreeMap<String, Vec<Row>> = BTreeMap::new();
-        for range in &self.not_passed {
+        // Some are judged before all others.
+        let mut ranges: Vec<&CaseRange> = self.not_passed.iter().collect();
+        ranges.sort_by_key(|range| range.member_case());
+        for range in ranges {
             let [first, last] =
                 [range.first, range.last].map(|case| ending(group, &members[range.member].case_id(case)));
             let rows = all.entry(range.state.name().to_owned()).or_default();

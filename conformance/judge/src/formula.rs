@@ -3,6 +3,7 @@
 use crate::cases::{Answers, CaseTally, ExpectedFailure, Unanswered};
 use crate::chunk::{Chunk, TASK};
 use crate::devices::Known;
+use crate::kept::KeptRow;
 use crate::sample::Sample;
 use crate::tally::{KEPT, Tally};
 use crate::{Outcome, judge, telling, worse};
@@ -43,23 +44,29 @@ pub struct RowPlace {
     pub output: usize,
 }
 
-/// Verdicts on a group's rows in a stage of a subject. Of a row that fails its words are kept.
-pub type RowTally = Tally<RowPlace, Vec<u32>>;
+/// Verdicts on a group's rows in a stage of a subject. Of a row that fails all is kept.
+pub type RowTally = Tally<RowPlace, KeptRow>;
 /// Rows of a group, by the formula's place among the group's and the case.
-pub type RowSample = Sample<(usize, CaseRef)>;
+pub type RowSample = Sample<(usize, CaseRef), KeptRow>;
 
 /// Failing rows that are kept for the diagnosis.
 pub const KEPT_FAILING: usize = 2048;
 /// Values of rows without a failure that are kept for it, and for the verdict on all of them together.
-pub const KEPT_PASSING: usize = 8192;
+const KEPT_PASSING: usize = 8192;
+
+/// Rows without a failure that are kept, of formulas with this number of outputs.
+#[must_use]
+pub fn most_passing(outputs: usize) -> usize {
+    KEPT_PASSING / outputs.max(1)
+}
 
 /// What a group's rows have come to in a stage of a subject.
 #[derive(Clone, Debug)]
 pub struct RowStanding {
     /// The verdicts.
     pub tally: RowTally,
-    /// The bits of the value that has the greatest margin.
-    worst_bits: u32,
+    /// The row that has the greatest margin.
+    worst: Option<KeptRow>,
     /// How many rows of each formula fail.
     pub failing: BTreeMap<usize, u64>,
     /// Some of them.
@@ -74,13 +81,12 @@ impl RowStanding {
     /// The standing before anything is judged, of formulas with this number of outputs.
     #[must_use]
     pub fn new(outputs: usize) -> Self {
-        let outputs = outputs.max(1);
         Self {
             tally: RowTally::default(),
-            worst_bits: 0,
+            worst: None,
             failing: BTreeMap::new(),
-            wrong: Sample::new(outputs, KEPT_FAILING),
-            right: Sample::new(outputs, KEPT_PASSING / outputs),
+            wrong: Sample::new(KEPT_FAILING),
+            right: Sample::new(most_passing(outputs)),
             cases: CaseTally::default(),
         }
     }
@@ -88,7 +94,7 @@ impl RowStanding {
     fn part(&self) -> Self {
         Self {
             tally: RowTally::default(),
-            worst_bits: 0,
+            worst: None,
             failing: BTreeMap::new(),
             wrong: self.wrong.part(),
             right: self.right.part(),
@@ -112,13 +118,13 @@ impl RowStanding {
             let worst = part.tally.worst;
             self.tally.add(part.tally);
             if worst.is_some_and(|(_, place)| self.tally.worst.is_some_and(|(_, own)| own == place)) {
-                self.worst_bits = part.worst_bits;
+                self.worst = part.worst;
             }
             for (member, count) in part.failing {
                 *self.failing.entry(member).or_default() += count;
             }
-            self.wrong.add(&part.wrong);
-            self.right.add(&part.right);
+            self.wrong.add(part.wrong);
+            self.right.add(part.right);
             self.cases.add(part.cases);
         }
     }
@@ -150,37 +156,33 @@ impl RowStanding {
 
     /// What was answered to the case of the greatest margin.
     #[must_use]
-    pub fn worst_answer(&self, members: &[&Member], stage: Stage, by: &Judging<'_>) -> Option<WorstAnswer> {
-        let (_, place) = self.tally.worst?;
+    pub fn worst_answer(&self, members: &[&Member]) -> Option<WorstAnswer> {
+        let ((_, place), row) = (self.tally.worst?, self.worst.as_ref()?);
         let (member, k) = (members[place.member], place.output);
-        let (_, reference, legal) = legal_case(member, place.case, stage, by);
         Some(WorstAnswer {
+            inputs: numbers(&row.inputs),
             output: member.spec.output_name(k),
-            value: Number(f32::from_bits(self.worst_bits).into()),
-            reference: Number(reference[k]),
-            interval: [Number(legal[k].low()), Number(legal[k].high())],
+            value: Number(row.values[k].into()),
+            reference: Number(row.reference[k]),
+            interval: bounds(&row.legal[k]),
         })
     }
 
     /// The failures that are reported, one of each case: the case of the simplest inputs first.
     #[must_use]
     pub fn failures(&self, members: &[&Member], stage: Stage, by: &Judging<'_>) -> Vec<Failure> {
-        let told = |place: &RowPlace, words: &Vec<u32>| failure(members[place.member], *place, words, stage, by);
-        let simplest = self.tally.simplest.as_ref().map(|(_, place, words)| (place, words));
-        let others = self.tally.failures.iter().filter(|(place, _)| simplest.is_none_or(|(one, _)| one != *place));
+        let told =
+            |(place, row): (RowPlace, KeptRow)| (place, failure(members[place.member], place, &row, stage, by.adapter));
+        let mut failing = self.tally.clone().reported(RowPlace::eq).map(told);
+        let simplest = failing.next().map(|(_, failure)| failure);
         let refused = self.cases.refused.iter().map(|(&(member, case), why)| {
             let id = members[member].case_id(case);
             (RowPlace { member, case, output: 0 }, unjudged(id, why.message(), stage.name(), by.adapter))
         });
-        let mut rest: Vec<(RowPlace, Failure)> =
-            others.map(|(place, words)| (*place, told(place, words))).chain(refused).collect();
+        let mut rest: Vec<(RowPlace, Failure)> = failing.chain(refused).collect();
         rest.sort_by_key(|(place, _)| *place);
         rest.truncate(KEPT);
-        simplest
-            .map(|(place, words)| told(place, words))
-            .into_iter()
-            .chain(rest.into_iter().map(|(_, one)| one))
-            .collect()
+        simplest.into_iter().chain(rest.into_iter().map(|(_, one)| one)).collect()
     }
 }
 
@@ -213,6 +215,12 @@ fn judge_values(
         &own[..outputs]
     };
     let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
+    let kept = || KeptRow {
+        inputs: chunk.inputs_of(case).to_vec(),
+        values: words[range.clone()].iter().map(|&bits| f32::from_bits(bits)).collect(),
+        reference: chunk.references[range.clone()].to_vec(),
+        legal: legal.to_vec(),
+    };
     let tally = &mut standing.tally;
     let (failed, pardoned) = (tally.totals.failed, tally.totals.expected_failures);
     let (mut greatest, mut errors) = (0.0, (0.0, 0));
@@ -234,23 +242,22 @@ fn judge_values(
         }
         let place = RowPlace { member: chunk.of[case], case: chunk.cases[case], output };
         if verdict.outcome == Outcome::Fail && excused.is_none() && is_first {
-            tally.fail(place, telling(chunk.inputs_of(case), is_random), || words[range.clone()].to_vec());
+            tally.fail(place, telling(chunk.inputs_of(case), is_random), kept);
         }
         tally.see_error(verdict.error);
         if tally.see_margin(verdict.margin, place) {
-            standing.worst_bits = bits;
+            standing.worst = Some(kept());
         }
         greatest = worse(greatest, verdict.error);
         if verdict.error.is_finite() {
             errors = (errors.0 + verdict.error, errors.1 + 1);
         }
     }
-    let values = words[range].iter().map(|&bits| f32::from_bits(bits));
     if standing.tally.totals.failed > failed {
         *standing.failing.entry(chunk.of[case]).or_default() += 1;
-        standing.wrong.push((chunk.of[case], chunk.cases[case]), values);
+        standing.wrong.push((chunk.of[case], chunk.cases[case]), kept);
     } else if standing.tally.totals.expected_failures == pardoned {
-        standing.right.push((chunk.of[case], chunk.cases[case]), values);
+        standing.right.push((chunk.of[case], chunk.cases[case]), kept);
     }
     (greatest, errors)
 }
@@ -283,51 +290,61 @@ fn excuse(
     })
 }
 
-/// A case's inputs, the reference of its outputs and what is legal of them.
-fn legal_case(member: &Member, case: CaseRef, stage: Stage, by: &Judging<'_>) -> (Vec<f32>, Vec<f64>, Vec<Accept>) {
-    let mut inputs = Vec::with_capacity(member.spec.input_len());
-    member.inputs(case, by.seed, &mut inputs);
-    let mut reference = vec![0.0; member.spec.output_len()];
-    let mut legal = vec![Accept::ANY; member.spec.output_len()];
+/// A row that was not judged here, with the reference and what is legal worked out.
+#[must_use]
+pub fn evaluated(
+    member: &Member,
+    inputs: Vec<f32>,
+    values: Vec<f32>,
+    (stage, known, profile): (Stage, &Known, &Profile),
+) -> KeptRow {
+    let outputs = member.spec.output_len();
+    let (mut reference, mut legal) = (vec![0.0; outputs], vec![Accept::ANY; outputs]);
     member.formula.reference(&inputs, &mut reference);
-    intervals(member, &inputs, stage, by.known, by.profile, &mut legal);
-    (inputs, reference, legal)
+    intervals(member, &inputs, stage, known, profile, &mut legal);
+    KeptRow { inputs, values, reference, legal }
+}
+
+/// Numbers of f32, as documents have them.
+fn numbers(values: &[f32]) -> Vec<Number> {
+    values.iter().map(|&x| Number(x.into())).collect()
+}
+
+fn bounds(legal: &Accept) -> [Number; 2] {
+    [Number(legal.low()), Number(legal.high())]
 }
 
 /// A row that fails at an output. Of a renderer that answers by cases all outputs are told.
-fn failure(member: &Member, place: RowPlace, words: &[u32], stage: Stage, by: &Judging<'_>) -> Failure {
-    let (inputs, reference, legal) = legal_case(member, place.case, stage, by);
-    let (k, values) = (place.output, words.iter().map(|&bits| f32::from_bits(bits)));
-    let error = |k: usize| judge(words[k], reference[k], &legal[k]).error;
-    let interval = |legal: &Accept| [Number(legal.low()), Number(legal.high())];
-    let narrow = |x: f32| Number(x.into());
+fn failure(member: &Member, place: RowPlace, row: &KeptRow, stage: Stage, adapter: &str) -> Failure {
+    let KeptRow { inputs, values, reference, legal } = row;
+    let (k, bits) = (place.output, values[place.output].to_bits());
+    let error = |k: usize| judge(values[k].to_bits(), reference[k], &legal[k]).error;
     let by_cases = stage == Stage::Answer;
-    let id = member.case_id(place.case);
     Failure {
         rerun: String::new(),
-        id,
-        adapter: by.adapter.to_owned(),
+        id: member.case_id(place.case),
+        adapter: adapter.to_owned(),
         stage: stage.name().into(),
         target: None,
         route: None,
         output: member.spec.output_name(k),
-        inputs: by_name(member, &inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         units: units(member),
         // An answer has its inputs in a row.
-        inputs_hex: if by_cases { serde_json::Map::new() } else { by_name(member, &inputs, bits_in_hex) },
+        inputs_hex: if by_cases { serde_json::Map::new() } else { by_name(member, inputs, bits_in_hex) },
         reference: Number(reference[k]),
-        interval: interval(&legal[k]),
+        interval: bounds(&legal[k]),
         promise: None,
-        value: narrow(f32::from_bits(words[k])),
-        value_hex: format!("0x{:08x}", words[k]),
-        unwritten: words[k] == lightmeter_scene::target::SENTINEL,
-        error_ulp: Number(if by_cases { (0..words.len()).map(error).fold(0.0, worse) } else { error(k) }),
+        value: Number(values[k].into()),
+        value_hex: format!("0x{bits:08x}"),
+        unwritten: bits == lightmeter_scene::target::SENTINEL,
+        error_ulp: Number(if by_cases { (0..values.len()).map(error).fold(0.0, worse) } else { error(k) }),
         answer: by_cases.then(|| FailedAnswer {
-            inputs: inputs.iter().map(|&x| narrow(x)).collect(),
-            outputs: (0..words.len()).map(|k| member.spec.output_name(k)).collect(),
+            inputs: numbers(inputs),
+            outputs: (0..values.len()).map(|k| member.spec.output_name(k)).collect(),
             reference: reference.iter().map(|&x| Number(x)).collect(),
-            interval: legal.iter().map(interval).collect(),
-            value: values.map(narrow).collect(),
+            interval: legal.iter().map(bounds).collect(),
+            value: numbers(values),
             problem: None,
         }),
     }

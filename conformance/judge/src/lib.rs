@@ -9,6 +9,7 @@ pub mod devices;
 pub mod diagnose;
 pub mod formula;
 pub mod image;
+pub mod kept;
 pub mod packed;
 pub mod sample;
 pub mod special;

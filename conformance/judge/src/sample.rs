@@ -3,6 +3,7 @@
 
 use lightmeter_catalogue::cases::mix;
 use lightmeter_catalogue::select::CaseRef;
+use rayon::prelude::*;
 
 /// What tells a row from all others.
 pub trait RowNumber: Copy + Ord {
@@ -30,15 +31,11 @@ impl RowNumber for (usize, CaseRef) {
     }
 }
 
-/// Rows with what was answered to them. It keeps those whose places have the least hashes, which no order of arrival changes.
+/// Rows with what is kept of each. It keeps those whose places have the least hashes, which no order of arrival changes.
 #[derive(Clone, Debug)]
-pub struct Sample<P> {
-    /// Hash and place of each row that is kept.
-    rows: Vec<(u64, P)>,
-    /// The rows' values, one after the other.
-    values: Vec<f32>,
-    /// Values of a row.
-    outputs: usize,
+pub struct Sample<P, V> {
+    /// Hash and place of each row that is kept, and what is kept of it.
+    rows: Vec<(u64, P, V)>,
     most: usize,
     /// How many rows came.
     pub seen: u64,
@@ -46,35 +43,33 @@ pub struct Sample<P> {
     bound: u64,
 }
 
-impl<P: RowNumber> Sample<P> {
-    /// An empty sample of rows with `outputs` values each, which keeps at most `most` of them.
+impl<P: RowNumber, V> Sample<P, V> {
+    /// An empty sample, which keeps at most `most` rows.
     #[must_use]
-    pub const fn new(outputs: usize, most: usize) -> Self {
-        Self { rows: vec![], values: vec![], outputs, most, seen: 0, bound: u64::MAX }
+    pub const fn new(most: usize) -> Self {
+        Self { rows: vec![], most, seen: 0, bound: u64::MAX }
     }
 
     /// An empty one to be added to this one later, which keeps nothing that this one would not.
     #[must_use]
-    pub fn part(&self) -> Self {
-        Self { bound: self.bound, ..Self::new(self.outputs, self.most) }
+    pub const fn part(&self) -> Self {
+        Self { rows: vec![], most: self.most, seen: 0, bound: self.bound }
     }
 
     /// Takes a row.
-    pub fn push(&mut self, place: P, values: impl IntoIterator<Item = f32>) {
+    pub fn push(&mut self, place: P, kept: impl FnOnce() -> V) {
         self.seen += 1;
         let hash = mix(place.number());
         if hash <= self.bound {
-            self.rows.push((hash, place));
-            self.values.extend(values);
+            self.rows.push((hash, place, kept()));
             self.thin(2 * self.most);
         }
     }
 
     /// Takes all rows of another part.
-    pub fn add(&mut self, other: &Self) {
+    pub fn add(&mut self, other: Self) {
         self.seen += other.seen;
-        self.rows.extend(&other.rows);
-        self.values.extend(&other.values);
+        self.rows.extend(other.rows);
         self.thin(2 * self.most);
     }
 
@@ -83,36 +78,41 @@ impl<P: RowNumber> Sample<P> {
         if self.rows.len() <= room {
             return;
         }
-        let mut order: Vec<usize> = (0..self.rows.len()).collect();
-        order.select_nth_unstable_by_key(self.most, |&row| self.rows[row]);
-        order.truncate(self.most);
-        self.bound = order.iter().map(|&row| self.rows[row].0).max().unwrap_or(0);
-        let values = |row: usize| self.values[row * self.outputs..(row + 1) * self.outputs].iter().copied();
-        self.values = order.iter().flat_map(|&row| values(row)).collect();
-        self.rows = order.iter().map(|&row| self.rows[row]).collect();
+        self.rows.select_nth_unstable_by_key(self.most, |(hash, place, _)| (*hash, *place));
+        self.rows.truncate(self.most);
+        self.bound = self.rows.iter().map(|(hash, ..)| *hash).max().unwrap_or(0);
     }
 
-    /// The rows in the order of their places, each with its values; at most as many as were asked for.
+    /// The rows in the order of their places, each with what is kept of it; at most as many as were asked for.
     #[must_use]
-    pub fn rows(&self) -> Vec<(P, &[f32])> {
-        let mut order: Vec<usize> = (0..self.rows.len()).collect();
-        order.sort_unstable_by_key(|&row| self.rows[row]);
+    pub fn rows(&self) -> Vec<(P, &V)> {
+        let mut order: Vec<&(u64, P, V)> = self.rows.iter().collect();
+        order.sort_unstable_by_key(|(hash, place, _)| (*hash, *place));
         order.truncate(self.most);
-        let row = |row: usize| (self.rows[row].1, &self.values[row * self.outputs..(row + 1) * self.outputs]);
-        let mut rows: Vec<(P, &[f32])> = order.into_iter().map(row).collect();
+        let mut rows: Vec<(P, &V)> = order.into_iter().map(|(_, place, kept)| (*place, kept)).collect();
         rows.sort_unstable_by_key(|(place, _)| *place);
         rows
     }
-}
 
-/// The same rows with the same values, to the bit.
-impl<P: RowNumber> PartialEq for Sample<P> {
-    fn eq(&self, other: &Self) -> bool {
+    /// Whether it has the rows of another sample, each with the same of it.
+    #[must_use]
+    pub fn is_like(&self, other: &Self, is_same: impl Fn(&V, &V) -> bool) -> bool {
         let (own, others) = (self.rows(), other.rows());
-        let is_same = |a: &[f32], b: &[f32]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
         self.seen == other.seen
             && own.len() == others.len()
             && own.iter().zip(&others).all(|(a, b)| a.0 == b.0 && is_same(a.1, b.1))
+    }
+
+    /// The same rows with something else of each, worked out on all cores.
+    #[must_use]
+    pub fn with<W: Send>(mut self, kept: impl Fn(P, V) -> W + Sync) -> Sample<P, W>
+    where
+        P: Send,
+        V: Send,
+    {
+        self.thin(self.most);
+        let rows = self.rows.into_par_iter().map(|(hash, place, value)| (hash, place, kept(place, value)));
+        Sample { rows: rows.collect(), most: self.most, seen: self.seen, bound: self.bound }
     }
 }
 
@@ -121,13 +121,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn value(place: usize) -> f32 {
-        f32::from(u16::try_from(place).expect("it is small"))
-    }
-
-    fn sample(places: &[usize]) -> Sample<usize> {
-        let mut sample = Sample::new(2, 8);
-        places.iter().for_each(|&place| sample.push(place, [value(place), -1.0]));
+    fn sample(places: &[usize]) -> Sample<usize, usize> {
+        let mut sample = Sample::new(8);
+        places.iter().for_each(|&place| sample.push(place, || 3 * place));
         sample
     }
 
@@ -140,14 +136,13 @@ mod tests {
             let whole = sample(&forth);
             prop_assert_eq!(whole.rows().len(), count.min(8));
             prop_assert_eq!(whole.seen, count as u64);
-            prop_assert!(whole.rows().iter().all(|(place, values)| *values == [value(*place), -1.0]));
-            let other = sample(&mixed);
-            prop_assert_eq!(whole.rows(), other.rows());
+            prop_assert!(whole.rows().iter().all(|(place, kept)| **kept == 3 * place));
+            prop_assert!(whole.is_like(&sample(&mixed), usize::eq));
             let (first, last) = mixed.split_at(cut.min(count));
             let mut sum = sample(last);
             let mut part = sum.part();
-            first.iter().for_each(|&place| part.push(place, [value(place), -1.0]));
-            sum.add(&part);
+            first.iter().for_each(|&place| part.push(place, || 3 * place));
+            sum.add(part);
             prop_assert_eq!(sum.rows(), whole.rows());
             prop_assert_eq!(sum.seen, whole.seen);
         }
@@ -156,8 +151,8 @@ mod tests {
     #[test]
     fn a_sample_is_spread_over_all_that_came() {
         let all: Vec<usize> = (0..60_000).collect();
-        let mut sample = Sample::new(1, 1024);
-        all.iter().for_each(|&place| sample.push(place, [0.0]));
+        let mut sample = Sample::new(1024);
+        all.iter().for_each(|&place| sample.push(place, || ()));
         let mut of_tenth = [0; 10];
         sample.rows().iter().for_each(|(place, _)| of_tenth[place / 6000] += 1);
         // Of 102 in the mean, with a standard deviation of less than 10.

@@ -4,7 +4,7 @@
 //! can be put together. What is kept of some cases only, the worst and the first to fail, is therefore kept by their places.
 
 use crate::{Outcome, is_worse, worse};
-use lightmeter_document::report::{Failure, Problem, ProblemKind, Totals};
+use lightmeter_document::report::{Problem, ProblemKind, Totals};
 use std::collections::BTreeMap;
 use std::iter::Sum;
 
@@ -151,36 +151,35 @@ impl<P: Ord + Clone, F: Clone> Tally<P, F> {
         }
     }
 
-    /// The same in the places of a greater whole, which are in the same order, with what is told there.
+    /// The same in the places of a greater whole, which are in the same order, with what is kept there.
     #[must_use]
-    pub fn within<Q: Ord, G>(&self, place: impl Fn(&P) -> Q, told: impl Fn(&P) -> G) -> Tally<Q, G> {
+    pub fn within<Q: Ord, G>(&self, place: impl Fn(&P) -> Q, kept: impl Fn(&P, &F) -> G) -> Tally<Q, G> {
         Tally {
             totals: self.totals,
             random: self.random,
             error_max: self.error_max,
             worst: self.worst.as_ref().map(|(margin, worst)| (*margin, place(worst))),
-            failures: self.failures.keys().map(|failing| (place(failing), told(failing))).collect(),
-            simplest: self.simplest.as_ref().map(|(least, simplest, _)| (*least, place(simplest), told(simplest))),
+            failures: self.failures.iter().map(|(at, one)| (place(at), kept(at, one))).collect(),
+            simplest: self.simplest.as_ref().map(|(least, at, one)| (*least, place(at), kept(at, one))),
             excused: self.excused.clone(),
         }
+    }
+
+    /// The failures in the order in which they are reported: the one of the simplest inputs, which explains most, then the first, without those
+    /// that are the same case.
+    pub fn reported(self, is_same: impl Fn(&P, &P) -> bool) -> impl Iterator<Item = (P, F)> {
+        let simplest = self.simplest.map(|(_, place, failure)| (place, failure));
+        let first = simplest.as_ref().map(|(place, _)| place.clone());
+        let others = self.failures.into_iter();
+        simplest
+            .into_iter()
+            .chain(others.filter(move |(place, _)| first.as_ref().is_none_or(|one| !is_same(one, place))))
     }
 
     /// What is wrong with all verdicts together: more than 1 % of them indeterminate, hard cases apart, make a run of little.
     #[must_use]
     pub fn problem(&self) -> Option<Problem> {
         problem(self.random, self.totals.verdicts, self.totals.indeterminate)
-    }
-}
-
-impl<P: Ord + Clone> Tally<P, Failure> {
-    /// The failures that are reported of a group: the one of the simplest inputs, which explains most, then the first.
-    pub fn reported(self) -> impl Iterator<Item = Failure> {
-        let simplest = self.simplest.map(|(_, _, failure)| failure);
-        let is_other = {
-            let key = simplest.as_ref().map(|one| (one.id.clone(), one.output.clone()));
-            move |one: &Failure| key.as_ref().is_none_or(|(id, output)| (id, output) != (&one.id, &one.output))
-        };
-        simplest.into_iter().chain(self.failures.into_values().filter(is_other)).take(KEPT_FAILURES)
     }
 }
 

@@ -97,6 +97,9 @@ pub struct Group {
 /// What was answered to the case of the greatest margin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WorstAnswer {
+    /// The case's inputs, number by number.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<Number>,
     /// The scalar output's name.
     pub output: String,
     /// What came out.

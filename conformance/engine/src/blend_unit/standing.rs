@@ -17,17 +17,16 @@ use lightmeter_document::report::{
     BlendState, Diagnosis, Failure, Group, GroupSample, Report, SampledRows, SampledStores, SpecialUse, StoresOfState,
     Tiers, Totals,
 };
-use lightmeter_judge::blend_unit::expect::expect;
+use lightmeter_judge::blend_unit::expect::ExpectedPixel;
 use lightmeter_judge::blend_unit::pixel::{self, Units};
 use lightmeter_judge::blend_unit::policy;
-use lightmeter_judge::blend_unit::rules::Rules;
 use lightmeter_judge::blend_unit::store::{StoreCounts, problems, store_of};
 use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, diagnose};
 use lightmeter_judge::cases::{CaseTally, Unanswered};
 use lightmeter_judge::formula::{bits_in_hex, by_name, units, unjudged};
-use lightmeter_judge::packed::{BadSample, packed, unpacked};
+use lightmeter_judge::packed::{BadSample, ReadRows, packed, unpacked};
 use lightmeter_judge::sample::Sample;
-use lightmeter_judge::tally::Tally;
+use lightmeter_judge::tally::{KEPT_FAILURES, Tally};
 use lightmeter_judge::{Outcome, worse};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::target::TargetFormat;
@@ -54,20 +53,37 @@ const MOST_AGAIN: usize = 1024;
 /// Failing pixels of a group that faults are tried on.
 const SAMPLES: usize = 1024;
 
+/// Failing pixels, by the place of formula and route, and the case.
+pub(crate) type PixelSample = Sample<(usize, CaseRef), FailingPixel>;
+
+/// The number of the piece that was drawn, the place of the case in it, and the case's id.
+type PixelPlace = (usize, usize, String);
+
+/// A failing pixel that is reported.
+#[derive(Clone)]
+struct KeptPixel {
+    /// The state's place among the group's.
+    of: usize,
+    route: Route,
+    inputs: Vec<f32>,
+    pixel: Units,
+    expected: ExpectedPixel,
+}
+
 /// What a group has come to on one subject and target.
 pub(super) struct UnitStanding {
     pub(super) target: TargetFormat,
     /// Why nothing is drawn.
     lacks: Option<&'static str>,
-    /// Verdicts by the number of the piece that was drawn, the place of the case in it, and the case's id.
-    verdicts: Tally<(usize, usize, String), Failure>,
+    /// Verdicts.
+    verdicts: Tally<PixelPlace, KeptPixel>,
     /// Pieces that were drawn.
     pieces: usize,
     tiers: Tiers,
     /// What values say of how they are stored; its states are those of the rows.
     stores: SampledStores,
     /// Some of the failing pixels, by the place of formula and route, and the case.
-    samples: Sample<(usize, CaseRef)>,
+    samples: PixelSample,
     rows: Vec<BlendState>,
     special: Vec<SpecialUse>,
     /// The same counted by cases, where that is asked for.
@@ -92,7 +108,7 @@ impl UnitStanding {
             pieces: 0,
             tiers: Tiers::default(),
             stores: SampledStores::default(),
-            samples: Sample::new(4, SAMPLES),
+            samples: Sample::new(SAMPLES),
             rows: vec![],
             special: vec![],
             cases: CaseTally::default(),
@@ -326,17 +342,24 @@ impl UnitStanding {
                 }
             }));
         }
-        let told =
-            |place: usize| failure(member, &id(place), piece, place, pixels[place], self.target, subject, options);
         let of = members.iter().position(|one| one.spec.id == member.spec.id).unwrap_or_default();
-        let way = way_of(of, piece.route);
+        let (way, program, route) = (way_of(of, piece.route), piece.program, piece.route);
+        let drawn = DrawnState { program, route, target: self.target, profile: options.profile };
         for &(place, _) in &tally.failing {
-            #[expect(clippy::cast_possible_truncation, reason = "a value of a target fits binary32")]
-            self.samples.push((way, cases[place]), pixels[place].map(|value| value as f32));
+            let kept = || FailingPixel { drawn, case: piece.case(place), pixel: pixels[place] };
+            self.samples.push((way, cases[place]), kept);
         }
+        let inputs = |place: usize| piece.inputs[place * piece.stride..(place + 1) * piece.stride].to_vec();
         let number = self.pieces;
         self.pieces += 1;
-        let mut verdicts = tally.verdicts.within(|&place| (number, place, id(place)), |&place| told(place));
+        let kept = |&place: &usize, &(pixel, expected): &(Units, ExpectedPixel)| KeptPixel {
+            of,
+            route,
+            inputs: inputs(place),
+            pixel,
+            expected,
+        };
+        let mut verdicts = tally.verdicts.within(|&place| (number, place, id(place)), kept);
         let hard = cases.iter().filter(|case| matches!(case, CaseRef::Hard(_))).count() as u64;
         let totals = verdicts.totals;
         verdicts.random = (totals.verdicts.saturating_sub(4 * hard), totals.indeterminate.saturating_sub(4 * hard));
@@ -382,14 +405,17 @@ impl UnitStanding {
             seconds_warm: self.seconds_warm,
             worst: self.verdicts.worst.as_ref().map(|(_, (.., id))| id.clone()),
             skip_reason: self.lacks.map(Into::into),
-            diagnosis: diagnosed(&self.samples, members, self.target, options.profile, options.seed),
+            diagnosis: diagnosed(&self.samples),
             sample: options.keeps_samples().then(|| sampled(&self, members)),
             problems,
             by_case: options.counts_cases.then(|| self.cases.told(members, group)),
             ..Group::new(group.into(), subject.identity.name.clone(), stage)
         });
         report.special.extend(self.special);
-        report.failures.extend(self.verdicts.reported());
+        // Two routes of a state have the same cases.
+        let is_same = |one: &PixelPlace, other: &PixelPlace| one.2 == other.2;
+        let told = |((.., id), kept): (PixelPlace, _)| failure(members, id, kept, self.target, subject);
+        report.failures.extend(self.verdicts.reported(is_same).take(KEPT_FAILURES).map(told));
         report.blend_states.extend(self.rows);
     }
 }
@@ -406,18 +432,20 @@ fn sampled(standing: &UnitStanding, members: &[&Member]) -> GroupSample {
         formulas: members.iter().map(|member| member.spec.id.clone()).collect(),
         failing: vec![],
         random: standing.verdicts.random.into(),
-        wrong: packed(&standing.samples),
+        wrong: packed(&standing.samples, |kept| kept.pixel.map(narrow).to_vec()),
         right: SampledRows::default(),
         stores: standing.target.is_unorm().then(|| standing.stores.clone()),
     }
 }
 
+/// A component of a pixel as a shard keeps it.
+#[expect(clippy::cast_possible_truncation, reason = "a value of a target fits binary32")]
+const fn narrow(value: f64) -> f32 {
+    value as f32
+}
+
 /// A sample of failing pixels that a shard kept, read for a whole of some members.
-pub(crate) fn unpacked_pixels(
-    sample: &GroupSample,
-    members: &[&Member],
-    known: Sample<(usize, CaseRef)>,
-) -> Result<Sample<(usize, CaseRef)>, BadSample> {
+pub(crate) fn unpacked_pixels(sample: &GroupSample, members: &[&Member]) -> Result<ReadRows, BadSample> {
     let place = |id: &String| members.iter().position(|member| member.spec.id == *id).unwrap_or(usize::MAX);
     let places: Vec<usize> = (sample.formulas.iter().map(place))
         .flat_map(|of| {
@@ -425,23 +453,18 @@ pub(crate) fn unpacked_pixels(
         })
         .collect();
     let each: Vec<&Member> = members.iter().flat_map(|member| std::iter::repeat_n(*member, Route::ALL.len())).collect();
-    unpacked(&sample.wrong, &places, &each, known)
+    unpacked(&sample.wrong, &places, &each, SAMPLES)
 }
 
-/// An empty sample of failing pixels.
-pub(crate) const fn no_pixels() -> Sample<(usize, CaseRef)> {
-    Sample::new(4, SAMPLES)
-}
-
-/// What explains the failing pixels of a group, by a sample of them.
-pub(crate) fn diagnosed(
-    samples: &Sample<(usize, CaseRef)>,
+/// Failing pixels that shards kept, with their cases drawn.
+pub(crate) fn with_cases(
+    pixels: ReadRows,
     members: &[&Member],
     target: TargetFormat,
     profile: &'static Profile,
     seed: u64,
-) -> Option<Diagnosis> {
-    let pixel = |((way, case), values): ((usize, CaseRef), &[f32])| {
+) -> PixelSample {
+    pixels.with(|(way, case), values| {
         let (member, route) = (members[way / Route::ALL.len()], Route::ALL[way % Route::ALL.len()]);
         let Kind::Blend(program) = member.spec.kind else { unreachable!("only blend states are drawn by the unit") };
         let mut inputs = vec![];
@@ -451,45 +474,36 @@ pub(crate) fn diagnosed(
             case: program.case(&inputs),
             pixel: std::array::from_fn(|k| values[k].into()),
         }
-    };
-    let pixels: Vec<FailingPixel> = samples.rows().into_iter().map(pixel).collect();
+    })
+}
+
+/// What explains the failing pixels of a group, by a sample of them.
+pub(crate) fn diagnosed(samples: &PixelSample) -> Option<Diagnosis> {
+    let pixels: Vec<FailingPixel> = samples.rows().into_iter().map(|(_, kept)| *kept).collect();
     let found = diagnose(&pixels)?;
     Some(Diagnosis { failing: samples.seen, ..found })
 }
 
-#[expect(clippy::too_many_arguments, reason = "a failure tells everything about its verdict")]
-fn failure(
-    member: &Member,
-    id: &str,
-    piece: &Piece,
-    place: usize,
-    pixel: Units,
-    target: TargetFormat,
-    subject: &Subject,
-    options: &Options,
-) -> Failure {
-    let expected = expect(piece.program, target, &piece.case(place), &Rules::RIGHT, options.profile);
+fn failure(members: &[&Member], id: String, kept: KeptPixel, target: TargetFormat, subject: &Subject) -> Failure {
+    let KeptPixel { of, route, inputs, pixel, expected } = kept;
+    let member = members[of];
     let verdict = |k: usize| expected.judge(target, k, pixel[k]);
     let k = (0..4).find(|&k| verdict(k).outcome == Outcome::Fail).unwrap_or_default();
-    let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];
     let mut bytes = vec![];
     pixel::write(target, pixel, &mut bytes);
     let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    let is_asked = subject.asked().is_some();
     Failure {
         rerun: String::new(),
-        id: id.into(),
+        id,
         adapter: subject.identity.name.clone(),
         stage: stage(subject).into(),
         target: Some(target.name().into()),
-        route: Some(piece.route.name().into()),
+        route: Some(route.name().into()),
         output: format!("color.{}", ["r", "g", "b", "a"][k]),
-        inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
+        inputs: by_name(member, &inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         units: units(member),
-        inputs_hex: if subject.asked().is_some() {
-            serde_json::Map::new()
-        } else {
-            by_name(member, inputs, bits_in_hex)
-        },
+        inputs_hex: if is_asked { serde_json::Map::new() } else { by_name(member, &inputs, bits_in_hex) },
         reference: Number(expected.reference[k]),
         interval: [Number(expected.low[k]), Number(expected.high[k])],
         promise: None,
@@ -497,7 +511,7 @@ fn failure(
         value_hex: format!("pixel bytes {hex}"),
         unwritten: false,
         error_ulp: Number(verdict(k).error),
-        answer: subject.asked().is_some().then(|| FailedAnswer {
+        answer: is_asked.then(|| FailedAnswer {
             inputs: inputs.iter().map(|&x| Number(x.into())).collect(),
             outputs: ["r", "g", "b", "a"].map(|k| format!("color.{k}")).to_vec(),
             reference: expected.reference.map(Number).to_vec(),

@@ -2,7 +2,7 @@
 //! the same functions as in a run.
 
 use super::{GroupKey, NoWhole, key};
-use crate::blend_unit::standing::{diagnosed, no_pixels, unpacked_pixels};
+use crate::blend_unit::standing::{diagnosed, unpacked_pixels, with_cases};
 use crate::diagnosed::GroupRows;
 use crate::options::{Adapted, Constant};
 use crate::stability;
@@ -16,12 +16,13 @@ use lightmeter_document::report::{
 use lightmeter_judge::blend_unit::store::{problems, store_of};
 use lightmeter_judge::devices::{Known, known};
 use lightmeter_judge::diagnose::Diagnose;
-use lightmeter_judge::formula::RowStanding;
-use lightmeter_judge::packed::{BadSample, unpacked};
+use lightmeter_judge::formula::{KEPT_FAILING, evaluated, most_passing};
+use lightmeter_judge::kept::KeptRow;
+use lightmeter_judge::packed::{BadSample, ReadRows, unpacked};
 use lightmeter_judge::sample::Sample;
 use lightmeter_judge::tally::problem;
 use lightmeter_scene::target::TargetFormat;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// What each shard kept of each group that it judged.
 #[derive(Default)]
@@ -84,6 +85,30 @@ impl Kept {
 }
 
 impl Context<'_> {
+    /// How many rows of each formula fail, of all shards.
+    fn failing(samples: &[&GroupSample], members: &[&Member]) -> Result<BTreeMap<usize, u64>, BadSample> {
+        let mut all = BTreeMap::new();
+        for sample in samples {
+            let failing = sample.failing.iter().fold(0, |sum: u64, count| sum.saturating_add(*count));
+            if sample.failing.len() != sample.formulas.len() || failing != sample.wrong.of {
+                return Err(BadSample("its counts of failing cases do not add up"));
+            }
+            for (place, count) in
+                places(sample, members).into_iter().zip(&sample.failing).filter(|(_, count)| **count > 0)
+            {
+                *all.entry(place).or_default() += count;
+            }
+        }
+        Ok(all)
+    }
+
+    /// A row that a shard kept, drawn and evaluated again.
+    fn row(&self, member: &Member, case: CaseRef, values: Vec<f32>, (stage, known): (Stage, &Known)) -> KeptRow {
+        let mut inputs = vec![];
+        member.inputs(case, self.seed, &mut inputs);
+        evaluated(member, inputs, values, (stage, known, self.profile))
+    }
+
     fn group(&self, group: &mut Group, samples: &[&GroupSample], whole: &Report) -> Result<(), BadSample> {
         let named: BTreeSet<&String> = samples.iter().flat_map(|sample| &sample.formulas).collect();
         let is_of_group = |member: &&Member| member.spec.group() == group.id || member.spec.id == group.id;
@@ -102,11 +127,7 @@ impl Context<'_> {
         let undecided = problem(random, group.totals.verdicts, group.totals.indeterminate);
         let known = known_of(group, whole);
         if let Some(target) = group.blended_on().and_then(|name| TargetFormat::by_name(name)) {
-            let mut pixels = no_pixels();
-            for sample in samples {
-                pixels.add(&unpacked_pixels(sample, &members, no_pixels())?);
-            }
-            once_each(&pixels)?;
+            let pixels = read(samples, |sample| unpacked_pixels(sample, &members))?;
             let stores = stores(samples);
             let special = whole.special.iter().filter(|special| {
                 group.has_case(&special.id) && special.adapter == group.adapter && special.target == target.name()
@@ -116,16 +137,22 @@ impl Context<'_> {
                 group.problems.extend(undecided);
             }
             group.store = store_of(&stores, &known, target).filter(|_| target.is_unorm() && group.totals.cases > 0);
-            group.diagnosis = diagnosed(&pixels, &members, target, self.profile, self.seed);
+            group.diagnosis =
+                pixels.and_then(|pixels| diagnosed(&with_cases(pixels, &members, target, self.profile, self.seed)));
             return Ok(());
         }
-        let rows = joined(samples, &members, first.spec.output_len())?;
-        let RowStanding { failing, wrong, right, .. } = &rows;
-        let told = GroupRows { members: &members, stage, failing, wrong, right }.told(
-            Some(self.diagnose),
-            &known.granted(self.profile),
-            self.seed,
-        );
+        let failing = Self::failing(samples, &members)?;
+        let places = |sample: &GroupSample| places(sample, &members);
+        let (most_wrong, most_right) = (KEPT_FAILING, most_passing(first.spec.output_len()));
+        let wrong = read(samples, |sample| unpacked(&sample.wrong, &places(sample), &members, most_wrong))?;
+        let right = read(samples, |sample| unpacked(&sample.right, &places(sample), &members, most_right))?;
+        let evaluated = |rows: Option<ReadRows>, most| match rows {
+            Some(rows) => rows.with(|(place, case), values| self.row(members[place], case, values, (stage, &known))),
+            None => Sample::new(most),
+        };
+        let (wrong, right) = (evaluated(wrong, most_wrong), evaluated(right, most_right));
+        let rows = GroupRows { members: &members, stage, failing: &failing, wrong: &wrong, right: &right };
+        let told = rows.told(Some(self.diagnose), &known.granted(self.profile));
         let unjudged = group.by_case.as_ref().map_or(0, |counts| counts.totals.unjudged);
         group.diagnosis = told.diagnosis.map(|found| Diagnosis { unjudged, ..found });
         group.problems = undecided.or(told.systematic).into_iter().collect::<Vec<Problem>>();
@@ -133,34 +160,29 @@ impl Context<'_> {
     }
 }
 
-/// The rows of all shards' samples, by the places of their formulas among the whole's.
-fn joined(samples: &[&GroupSample], members: &[&Member], outputs: usize) -> Result<RowStanding, BadSample> {
-    let mut rows = RowStanding::new(outputs);
-    for sample in samples {
-        let failing = sample.failing.iter().fold(0, |sum: u64, count| sum.saturating_add(*count));
-        if sample.failing.len() != sample.formulas.len() || failing != sample.wrong.of {
-            return Err(BadSample("its counts of failing cases do not add up"));
-        }
-        let place = |id: &String| members.iter().position(|member| member.spec.id == *id).unwrap_or(usize::MAX);
-        let places: Vec<usize> = sample.formulas.iter().map(place).collect();
-        let empty = RowStanding::new(outputs);
-        rows.wrong.add(&unpacked(&sample.wrong, &places, members, empty.wrong)?);
-        rows.right.add(&unpacked(&sample.right, &places, members, empty.right)?);
-        for (place, count) in places.iter().zip(&sample.failing).filter(|(_, count)| **count > 0) {
-            *rows.failing.entry(*place).or_default() += count;
-        }
-    }
-    once_each(&rows.wrong)?;
-    once_each(&rows.right)?;
-    Ok(rows)
+/// The places of a sample's formulas among the whole's.
+fn places(sample: &GroupSample, members: &[&Member]) -> Vec<usize> {
+    let place = |id: &String| members.iter().position(|member| member.spec.id == *id).unwrap_or(usize::MAX);
+    sample.formulas.iter().map(place).collect()
 }
 
-/// Checks that no case is in the samples of two shards.
-fn once_each(sample: &Sample<(usize, CaseRef)>) -> Result<(), BadSample> {
-    let rows = sample.rows();
-    match rows.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+/// The rows of all shards' samples, of which no two have the same case; `None` where there is no sample.
+fn read(
+    samples: &[&GroupSample],
+    unpacked: impl Fn(&GroupSample) -> Result<ReadRows, BadSample>,
+) -> Result<Option<ReadRows>, BadSample> {
+    let mut all: Option<ReadRows> = None;
+    for sample in samples {
+        let rows = unpacked(sample)?;
+        match &mut all {
+            Some(all) => all.add(rows),
+            None => all = Some(rows),
+        }
+    }
+    let is_twice = |all: &ReadRows| all.rows().windows(2).any(|pair| pair[0].0 == pair[1].0);
+    match all.as_ref().is_some_and(is_twice) {
         true => Err(BadSample("a case is in the samples of two shards")),
-        false => Ok(()),
+        false => Ok(all),
     }
 }
 

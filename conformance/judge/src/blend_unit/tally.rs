@@ -68,8 +68,8 @@ fn distance(value: f64, reference: f64, most: f64) -> f64 {
 /// The pixels of a state, or of a group of them.
 #[derive(Clone, Debug, Default)]
 pub struct UnitTally {
-    /// Verdicts on components, by the places of the pixels' cases.
-    pub verdicts: Tally<usize>,
+    /// Verdicts on components, by the places of the pixels' cases. Of a pixel that fails, what was left and what is legal are kept.
+    pub verdicts: Tally<usize, (Units, ExpectedPixel)>,
     /// On targets of 8 bits.
     pub tiers: Tiers,
     /// What the values of each component say of how they are stored.
@@ -157,7 +157,7 @@ impl UnitTally {
             self.failing.push((place, failed));
             let simple =
                 case.sources[..case.layers].iter().chain([&case.dst, &case.constant]).map(|x| simplicity(x)).sum();
-            self.verdicts.fail(place, simple, || ());
+            self.verdicts.fail(place, simple, || (pixel, expected));
         }
         if let Some(model) = known.blend_model.filter(|_| target.encoding() == Encoding::Unorm8) {
             let predicted = model.predict(program, route, case, super::pixel::stored(target.encoding(), case.dst));
@@ -255,7 +255,7 @@ mod tests {
         UnitCase { sources: [[src; 4]; MOST_LAYERS], layers: 1, dst: [dst; 4], constant: [0.0; 4] }
     }
 
-    fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> Tally<usize> {
+    fn tally(target: TargetFormat, case: &UnitCase, pixels: &[Units]) -> Tally<usize, (Units, ExpectedPixel)> {
         let drawn = DrawnState {
             program: one_plus_one(),
             route: Route::Native,
