@@ -40,7 +40,7 @@ pub mod image {
 /// Special values: what is asked and promised, what is on record, and how they are run.
 pub mod special {
     pub use lightmeter_catalogue::special::{
-        Class, DEVIATIONS, FAMILY, Gives, PROBES, Probe, Promise, Source, SpecialDeviation, Way,
+        Class, DEVIATIONS, FAMILY, Gives, PROBES, Probe, Promise, Source, Way, deviation_of,
     };
     pub use lightmeter_engine::special::{run, verdict};
     pub use lightmeter_judge::special::record;
@@ -50,6 +50,6 @@ pub mod special {
 pub mod stability {
     pub use lightmeter_engine::stability::*;
     pub use lightmeter_judge::stability::{
-        Conditioning, FormStanding, ILL_CONDITIONED, ROUNDING, UNSTABLE, condition, roundings, size,
+        ILL_CONDITIONED, ROUNDING, UNSTABLE, condition, conditioning, roundings, size, text,
     };
 }

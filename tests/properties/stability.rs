@@ -6,11 +6,12 @@ use lightmeter::arithmetic::profile::WGSL;
 use lightmeter::cases::{Domain, FAMILIES, Formula, Kind, Reader, Spec, Visitor, Wanted, Writer, visit};
 use lightmeter::device::Code;
 use lightmeter::document::event::Silent;
+use lightmeter::document::show::{Conditioning, FormStanding};
 use lightmeter::filter::Filter;
 use lightmeter::options::Options;
 use lightmeter::run::run;
 use lightmeter::select::{CaseRef, Member, catalogue};
-use lightmeter::stability::{Conditioning, FormStanding, roundings};
+use lightmeter::stability::{self, roundings};
 use lightmeter::subject::Subject;
 use lightmeter::subject_gpu::{code_of, open_device};
 use lightmeter_gpu::{Adapter, FILES};
@@ -282,7 +283,7 @@ fn a_stable_form_computes_what_its_naive_form_means() {
 fn conditioning(member: &Member, row: &[f32]) -> Conditioning {
     let mut legal = vec![Accept::ANY; member.spec.output_len()];
     member.formula.interval(row, &WGSL, &mut legal);
-    Conditioning::of(member, row, &legal, &[])
+    stability::conditioning(member, row, &legal, &[])
 }
 
 /// Forms whose claims hold for the operations in the order in which they are written, which the language does not promise.
@@ -366,7 +367,7 @@ fn ill_conditioned_unstable_and_singular_are_told_apart() {
         let near: Vec<Vec<f32>> = (0..member.near()).map(near).collect();
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
         member.formula.interval(&row, &WGSL, &mut legal);
-        Conditioning::of(member, &row, &legal, &near).standing
+        stability::conditioning(member, &row, &legal, &near).standing
     };
     assert_eq!(standing("vector/halfway/hard/half-vector-of-nothing"), FormStanding::Singular);
     assert_eq!(standing("fog/linear/hard/dmin-equals-dmax-at-the-step"), FormStanding::Singular);

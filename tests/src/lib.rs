@@ -186,7 +186,7 @@ fn verdict(member: &Member, row: &[f32], stage: Stage, subject: &Subject, words:
     let mut legal = vec![Accept::ANY; outputs];
     let mut profile = WGSL;
     for deviation in &subject.known.deviations {
-        profile = deviation.grant(profile);
+        profile = lightmeter::devices::grant(deviation, profile);
     }
     intervals(member, row, stage, &subject.known, &profile, &mut legal);
     for (output, &bits) in words.iter().enumerate() {

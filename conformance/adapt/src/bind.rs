@@ -6,6 +6,7 @@ use crate::name::keys;
 use crate::program::{From, Leaf, ShaderOutput, ShaderProgram, Variable};
 use crate::synonyms::SYNONYMS;
 use lightmeter_catalogue::cases::{Spec, ValueShape};
+use lightmeter_document::report::FoundBy;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{BuiltIn, ScalarKind};
 use std::collections::{BTreeSet, HashSet};
@@ -23,19 +24,6 @@ pub struct AskedBinding {
 const NAMELESS: &str = "the module has no names of its variables, by which they are bound: compile it with names, such as by `naga -g`, \
                         `glslangValidator -g` or `dxc -Zi`";
 
-/// How a binding was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
-    /// By `--bind`.
-    Asked,
-    /// The formula has an input of that name.
-    SameName,
-    /// By the list of synonyms.
-    Synonym,
-    /// The pipeline gives it, or the shader does not use it.
-    Fixed,
-}
-
 /// A variable and what it is set to.
 #[derive(Clone, Debug)]
 pub struct Bound {
@@ -44,7 +32,7 @@ pub struct Bound {
     /// The expression over the formula's inputs.
     pub expression: String,
     /// How it was found.
-    pub found: Found,
+    pub found: FoundBy,
     /// What it would be if it pointed the other way, where its name does not tell.
     pub turned: Option<String>,
     /// Whether it is of an element of an array other than the first.
@@ -86,7 +74,7 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
     for slot in &program.slots {
         match expression(slot, &context, asked) {
             Some((expression, found)) => {
-                let turned = if found == Found::Asked { None } else { turned(slot, &context) };
+                let turned = if found == FoundBy::Asked { None } else { turned(slot, &context) };
                 let is_further = slot.is_further;
                 bound.push(Bound {
                     name: slot.name.clone(),
@@ -252,16 +240,16 @@ fn meanings(slot: &Variable) -> impl Iterator<Item = Meaning> + '_ {
     })
 }
 
-fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) -> Option<(String, Found)> {
+fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) -> Option<(String, FoundBy)> {
     let whole = asked.iter().find(|asked| asked.name == slot.name);
     if let Some(asked) = whole.or_else(|| asked.iter().find(|asked| is_named(slot, &asked.name))) {
-        return Some((asked.expression.clone(), Found::Asked));
+        return Some((asked.expression.clone(), FoundBy::Asked));
     }
     if let From::BuiltIn(built_in) = slot.from {
-        return Some((built_in_value(built_in, slot.leaf, context), Found::Fixed));
+        return Some((built_in_value(built_in, slot.leaf, context), FoundBy::Fixed));
     }
     if !slot.is_used {
-        return Some((zero(slot.leaf), Found::Fixed));
+        return Some((zero(slot.leaf), FoundBy::Fixed));
     }
     // naga puts an underscore behind a name that ends in a digit.
     let name = slot.name.trim_end_matches('_');
@@ -271,22 +259,22 @@ fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) ->
     if let Some(input) = same
         && let Some(fitted) = fitted(input.name, input.shape, slot.leaf, None)
     {
-        return Some((fitted, Found::SameName));
+        return Some((fitted, FoundBy::SameName));
     }
     if is_of_light(slot, context) {
         return fitted("position", ValueShape::Vec3, slot.leaf, Some(Meaning::LightPosition))
-            .map(|is| (is, Found::Synonym));
+            .map(|is| (is, FoundBy::Synonym));
     }
     let understood = meanings(slot).find_map(|meaning| {
         // Further lights of an array give nothing.
         if slot.is_further && is_light_color(meaning) {
-            return Some((zero(slot.leaf), Found::Synonym));
+            return Some((zero(slot.leaf), FoundBy::Synonym));
         }
         let expression = context.expression(meaning, slot.from)?;
         let fitted = fitted(&expression, shape_of(meaning, &expression, context.spec), slot.leaf, Some(meaning))?;
-        Some((fitted, Found::Synonym))
+        Some((fitted, FoundBy::Synonym))
     });
-    understood.or_else(|| Some((numbered(slot, context).or_else(|| unnamed(slot, context))?, Found::Synonym)))
+    understood.or_else(|| Some((numbered(slot, context).or_else(|| unnamed(slot, context))?, FoundBy::Synonym)))
 }
 
 /// The input whose name a variable has but for a number at its end, by which tools tell names apart.

@@ -306,7 +306,11 @@ fn sitting(
     use_wall: bool,
     observer: &mut dyn Observer,
 ) -> Result<Sitting, GpuError> {
-    let profile = subject.known.deviations.iter().fold(*options.profile, |profile, known| known.grant(profile));
+    let profile = subject
+        .known
+        .deviations
+        .iter()
+        .fold(*options.profile, |profile, known| lightmeter_judge::devices::grant(known, profile));
     // What computes and what draws have devices of their own: Mesa 22.3's llvmpipe loses the time of a dispatch once it has drawn.
     let [computes, draws] = [(); 2].map(|()| lightmeter_subject_gpu::gpu(subject).map(Gpu::sibling).transpose());
     let (computes, draws) = (computes?, draws?);

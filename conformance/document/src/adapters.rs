@@ -1,6 +1,7 @@
 //! The JSON of `adapters`.
 
 use crate::Word;
+use lightmeter_scene::target::TargetFormat;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -33,16 +34,16 @@ pub struct ListedAdapter {
     /// Subpixel bits of the rasteriser, where they are known.
     pub subpixel_bits: Option<u32>,
     /// Known departures of built-in functions.
-    pub deviations: Vec<AccuracyDeviation>,
+    pub deviations: Vec<Deviation>,
     /// The integer model that the blend unit follows bit for bit, where one is known.
     pub blend_model: Option<Word>,
     /// Known departures of the blend unit.
-    pub blend_deviations: Vec<BlendUnitDeviation>,
+    pub blend_deviations: Vec<BlendDeviation>,
 }
 
 /// A known departure of a built-in function from its promised accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct AccuracyDeviation {
+pub struct Deviation {
     /// The name in reports.
     pub name: Word,
     /// A part of the driver's own description.
@@ -54,7 +55,7 @@ pub struct AccuracyDeviation {
     /// The reason, with the evidence.
     pub reason: Word,
     /// The built-in function.
-    pub builtin: BuiltinFunction,
+    pub builtin: Builtin,
     /// The least argument concerned.
     pub low: f64,
     /// The greatest argument concerned.
@@ -62,13 +63,13 @@ pub struct AccuracyDeviation {
     /// How many times the promised bound is granted there.
     pub factor: f64,
     /// An argument at which the driver is seen outside the promised bound.
-    pub witness: f64,
+    pub witness: f32,
 }
 
 /// A built-in function that a deviation concerns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum BuiltinFunction {
+pub enum Builtin {
     /// exp.
     Exp,
     /// exp2, and so pow.
@@ -77,15 +78,19 @@ pub enum BuiltinFunction {
 
 /// A known departure of a blend unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct BlendUnitDeviation {
+pub struct BlendDeviation {
     /// The name in reports.
     pub name: Word,
     /// A part of the driver's own description.
     pub driver: Word,
     /// The reason, with the evidence.
     pub reason: Word,
+    /// The target concerned.
+    pub target: TargetFormat,
     /// The least magnitude of the results concerned.
     pub from: f64,
     /// Whether such results are granted a NaN.
     pub becomes_nan: bool,
+    /// A case in which the driver is seen to do so.
+    pub witness: Word,
 }

@@ -141,8 +141,9 @@ pub struct FormulasDocument {
     pub formulas: Vec<ListedFormula>,
 }
 
-/// A formula with its inputs and outputs.
+/// A formula with its inputs and outputs. Packs and the protocol have what a renderer needs of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct ListedFormula {
     /// The id of the formula.
     pub id: String,
@@ -152,20 +153,44 @@ pub struct ListedFormula {
     #[serde(default)]
     pub rules: Vec<Word>,
     /// Where the formula is from.
-    pub source: Word,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<Word>,
     /// What computes it or draws it.
     #[serde(default)]
     pub made_by: MadeBy,
     /// The stages that judge it: `compute`, `fragment`, `fixed-function` or `raster`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Word>,
     /// What the formula claims, where it is a stable form.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stable: Option<StableClaim>,
-    /// The inputs, in their order.
-    pub inputs: Vec<ListedInput>,
-    /// The outputs, in their order.
-    pub outputs: Vec<ListedOutput>,
+    /// The inputs, in the order of a case's numbers.
+    pub inputs: Vec<ListedValue>,
+    /// The outputs, in the order of an answer's numbers.
+    pub outputs: Vec<ListedValue>,
     /// Other ids of the same formula.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub aliases: Vec<String>,
+    /// How many cases a pack has of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+}
+
+impl ListedFormula {
+    /// The same without rules, meanings and what computes it. They explain the cases and do not choose them, and packs of older versions have none.
+    #[must_use]
+    pub fn without_explanations(&self) -> Self {
+        let plain = |values: &[ListedValue]| {
+            values.iter().map(|value| ListedValue { means: Word::default(), ..value.clone() }).collect()
+        };
+        Self {
+            rules: vec![],
+            made_by: MadeBy::default(),
+            inputs: plain(&self.inputs),
+            outputs: plain(&self.outputs),
+            ..self.clone()
+        }
+    }
 }
 
 /// The claim of a stable form: at its hard cases and near them it errs by no more than this.
@@ -179,61 +204,68 @@ pub struct StableClaim {
     pub because: Word,
 }
 
-/// An input of a formula.
+/// An input or an output of a formula.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ListedInput {
-    /// The name of the input.
+#[serde(deny_unknown_fields)]
+pub struct ListedValue {
+    /// Its name.
     pub name: Word,
     /// `scalar`, `vec2`, `vec3`, `vec4`, `mat3` or `mat4`; matrices are column by column.
     pub shape: Word,
-    /// The unit.
+    /// Its unit.
     pub unit: Word,
-    /// What the input means: which way it points, whether the formula normalises it, in which space it is.
+    /// What it means: which way it points, whether the formula normalises it, in which space it is.
     #[serde(default)]
     pub means: Word,
-    /// What random cases draw the input from.
-    pub domain: ListedDomain,
+    /// What random cases draw it from, where it is an input.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub domain: Option<Domain>,
 }
 
-/// An output of a formula.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct ListedOutput {
-    /// The name of the output.
-    pub name: Word,
-    /// `scalar`, `vec2`, `vec3`, `vec4`, `mat3` or `mat4`; matrices are column by column.
-    pub shape: Word,
-    /// The unit.
-    pub unit: Word,
-    /// What the output means.
-    #[serde(default)]
-    pub means: Word,
-}
-
-/// What random cases draw an input from. Bounds are those of f32, widened exactly.
+/// What random cases draw an input from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-#[schemars(rename = "Domain")]
-pub enum ListedDomain {
+pub enum Domain {
     /// Evenly from low to high, each component.
-    Uniform(f64, f64),
+    Uniform(f32, f32),
     /// Evenly in the logarithm, each component.
-    LogUniform(f64, f64),
+    LogUniform(f32, f32),
     /// Colour components: evenly from 0 to 1, now and then exactly 0 or 1.
     Unit,
     /// A unit vector, as near as f32 holds one.
     Direction,
     /// A vector of any direction and of a length drawn evenly in the logarithm.
-    Vector(f64, f64),
+    Vector(f32, f32),
     /// Barycentric weights: they sum to 1 as nearly as f32 allows.
     Weights,
     /// Whole numbers, the ends included.
     Whole(u32, u32),
     /// Multiples of 1/2 from low to high.
-    Halves(f64, f64),
-    /// A rotation, a scale of each axis drawn evenly in the logarithm, and a shear.
-    Transform(f64, f64),
-    /// A vertex in clip coordinates near the case's pixel.
+    Halves(f32, f32),
+    /// A rotation, a scale of each axis drawn evenly in the logarithm, mirrored half the time, and a shear; in a 4 × 4
+    /// matrix also a translation and a last row near (0, 0, 0, 1).
+    Transform(f32, f32),
+    /// A vertex in clip coordinates: its place 8 to 60 pixels from the case's pixel, w from 0.5 to 8.
     Around,
-    /// A pixel of the middle of the rasteriser's target.
+    /// A pixel of the middle of the rasteriser's target, another for each of 16,384 consecutive cases.
     Pixel,
+}
+
+/// What random cases are drawn from, in words.
+impl std::fmt::Display for Domain {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Uniform(low, high) => write!(f, "{low} to {high}"),
+            Self::LogUniform(low, high) => write!(f, "{low} to {high}, evenly in the logarithm"),
+            Self::Unit => f.write_str("0 to 1"),
+            Self::Direction => f.write_str("a unit vector"),
+            Self::Vector(low, high) => write!(f, "of length {low} to {high}"),
+            Self::Weights => f.write_str("weights that sum to 1"),
+            Self::Whole(low, high) => write!(f, "whole, {low} to {high}"),
+            Self::Halves(low, high) => write!(f, "halves, {low} to {high}"),
+            Self::Transform(low, high) => write!(f, "a transform with scales of {low} to {high}"),
+            Self::Around => f.write_str("a vertex around the pixel"),
+            Self::Pixel => f.write_str("a pixel"),
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The manifest of a pack of cases: `lightmeter.pack/1`.
 
 use crate::Word;
-use crate::made_by::MadeBy;
+use crate::list::ListedFormula;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -46,7 +46,7 @@ const fn is_zero(count: &usize) -> bool {
 }
 
 /// What a pack holds.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Manifest {
     /// `lightmeter.pack/1`.
     #[schemars(extend("const" = SCHEMA))]
@@ -65,7 +65,7 @@ pub struct Manifest {
     #[serde(default, skip_serializing_if = "is_false")]
     pub columns: bool,
     /// The formulas, with their inputs and outputs.
-    pub formulas: Vec<PackedFormula>,
+    pub formulas: Vec<ListedFormula>,
     /// How many cases of blend states there are on each target.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub on_targets: BTreeMap<String, u64>,
@@ -76,61 +76,6 @@ pub struct Manifest {
     pub scenes: Vec<PackedScene>,
     /// Each file's bytes and checksum.
     pub files: Vec<Listed>,
-}
-
-/// A formula of a pack.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PackedFormula {
-    /// Its id.
-    pub id: String,
-    /// It, on a line.
-    pub formula: Word,
-    /// The rules that the line does not state.
-    #[serde(default)]
-    pub rules: Vec<Word>,
-    /// What computes it or draws it.
-    #[serde(default)]
-    pub made_by: MadeBy,
-    /// What it takes, in the order of a case's numbers.
-    pub inputs: Vec<PackedValue>,
-    /// What it gives, in the order of an answer's numbers.
-    pub outputs: Vec<PackedValue>,
-    /// How many cases the pack has of it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub count: Option<usize>,
-}
-
-/// An input or an output of a formula.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PackedValue {
-    /// Its name.
-    pub name: Word,
-    /// `scalar`, `vec2`, `vec3`, `vec4`, `mat3` or `mat4`; matrices are column by column.
-    pub shape: Word,
-    /// Its unit.
-    pub unit: Word,
-    /// What it means.
-    #[serde(default)]
-    pub means: Word,
-}
-
-impl PackedFormula {
-    /// The same without rules, meanings and what computes it. They explain the cases and do not choose them, and packs of older versions have none.
-    #[must_use]
-    pub fn without_explanations(&self) -> Self {
-        let plain = |values: &[PackedValue]| {
-            values.iter().map(|value| PackedValue { means: Word::default(), ..value.clone() }).collect()
-        };
-        Self {
-            rules: vec![],
-            made_by: MadeBy::default(),
-            inputs: plain(&self.inputs),
-            outputs: plain(&self.outputs),
-            ..self.clone()
-        }
-    }
 }
 
 /// A scene of a pack.

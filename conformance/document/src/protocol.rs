@@ -1,8 +1,8 @@
 //! What a renderer that runs as a process is told and asked, a line each: `lightmeter.protocol/1`.
 
 use crate::Word;
+use crate::list::ListedFormula;
 use crate::made_by::LayerRequest;
-use crate::pack::PackedFormula;
 use lightmeter_scene::target::TargetFormat;
 use schemars::{JsonSchema, Schema};
 use serde::{Deserialize, Serialize};
@@ -25,10 +25,10 @@ pub struct Greeting {
 }
 
 /// The line that describes a formula. It is written before the formula's first case if the renderer's hello has `"describe": true`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FormulaDescription {
     /// The formula, as a pack's manifest has it, without the number of cases.
-    pub describe: PackedFormula,
+    pub describe: ListedFormula,
 }
 
 /// A case of a formula; of a blend state on a target, with the states that it is drawn by.

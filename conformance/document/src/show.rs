@@ -49,7 +49,7 @@ pub struct ShownCase {
     /// The outputs.
     pub outputs: Vec<ShownOutput>,
     /// How well the case can be computed, and how well the form promises to.
-    pub conditioning: ShownConditioning,
+    pub conditioning: Conditioning,
     /// What each adapter gives in each stage.
     pub answers: Vec<ShownAnswer>,
     /// Of a hard case: its stable and its naive form.
@@ -85,20 +85,20 @@ pub struct ShownOutput {
 }
 
 /// How well a case can be computed, and how well its form promises to.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ShownConditioning {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Conditioning {
     /// How many roundings of the result come of one rounding of each input.
     pub condition: Number,
     /// How many roundings the legal values reach from the reference; infinite where anything is legal.
     pub reach: Number,
     /// What follows.
-    pub standing: ShownStanding,
+    pub standing: FormStanding,
 }
 
 /// What the legal values of a form say of it at a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum ShownStanding {
+pub enum FormStanding {
     /// The result moves by no more than a few roundings, and so do the legal values.
     Stable,
     /// The inputs' own roundings move the result too far for any method.

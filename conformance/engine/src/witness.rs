@@ -4,8 +4,10 @@
 use crate::blend_unit;
 use crate::options::Options;
 use lightmeter_catalogue::filter::Filter;
+use lightmeter_document::adapters::{BlendDeviation, Deviation};
+use lightmeter_document::special::SpecialDeviation;
 use lightmeter_judge::devices;
-use lightmeter_judge::devices::BlendDeviation;
+use lightmeter_judge::devices::{exact, grant, interval, probe};
 use lightmeter_judge::{Outcome, judge};
 
 use crate::device::{Code, DeviceError};
@@ -27,11 +29,11 @@ pub const FAMILY: &str = "deviation";
 #[derive(Clone, Copy, Debug)]
 pub enum NamedDeviation {
     /// Of the accuracy of a built-in function.
-    Accuracy(&'static devices::Deviation),
+    Accuracy(&'static Deviation),
     /// Of a blend unit.
     Blend(&'static BlendDeviation),
     /// Of what is promised of NaN, infinity, subnormals and signed zero.
-    Special(&'static special_values::SpecialDeviation),
+    Special(&'static SpecialDeviation),
 }
 
 impl NamedDeviation {
@@ -57,21 +59,21 @@ impl NamedDeviation {
 
     /// Its name in reports.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Accuracy(deviation) => deviation.name,
-            Self::Blend(deviation) => deviation.name,
-            Self::Special(deviation) => deviation.name,
+            Self::Accuracy(deviation) => &deviation.name,
+            Self::Blend(deviation) => &deviation.name,
+            Self::Special(deviation) => &deviation.name,
         }
     }
 
     /// Why it is granted.
     #[must_use]
-    pub const fn reason(self) -> &'static str {
+    pub fn reason(self) -> &'static str {
         match self {
-            Self::Accuracy(deviation) => deviation.reason,
-            Self::Blend(deviation) => deviation.reason,
-            Self::Special(deviation) => deviation.reason,
+            Self::Accuracy(deviation) => &deviation.reason,
+            Self::Blend(deviation) => &deviation.reason,
+            Self::Special(deviation) => &deviation.reason,
         }
     }
 
@@ -98,10 +100,10 @@ impl NamedDeviation {
 
 /// Whether the function's value at the witness is the deviation that is described: outside of what is promised, and inside of what is
 /// granted. Wronger than that is another mistake, which the cases will show.
-fn shows(deviation: &devices::Deviation, bits: u32, profile: &Profile) -> bool {
-    let promised = deviation.builtin.interval(deviation.witness, profile);
-    let granted = deviation.builtin.interval(deviation.witness, &deviation.grant(*profile));
-    let exact = deviation.builtin.exact(deviation.witness);
+fn shows(deviation: &Deviation, bits: u32, profile: &Profile) -> bool {
+    let promised = interval(deviation.builtin, deviation.witness, profile);
+    let granted = interval(deviation.builtin, deviation.witness, &grant(deviation, *profile));
+    let exact = exact(deviation.builtin, deviation.witness);
     let outcome = |legal| judge(bits, exact, legal).outcome;
     outcome(&promised) == Outcome::Fail && outcome(&granted) == Outcome::Pass
 }
@@ -111,7 +113,7 @@ fn shows(deviation: &devices::Deviation, bits: u32, profile: &Profile) -> bool {
 /// # Errors
 /// Where the device fails.
 pub fn accuracy(
-    deviation: &devices::Deviation,
+    deviation: &Deviation,
     subject: &Subject,
     code: &Code,
     profile: &Profile,
@@ -120,7 +122,7 @@ pub fn accuracy(
         return Ok(None);
     }
     let Some(device) = subject.device() else { return Ok(None) };
-    let Some(bits) = device.probe(code, deviation.builtin.probe(), deviation.witness)? else { return Ok(None) };
+    let Some(bits) = device.probe(code, probe(deviation.builtin), deviation.witness)? else { return Ok(None) };
     let is_shown = shows(deviation, bits, profile);
     // If the rules of the chosen profile allow the driver's value, it is no deviation under that profile, so there is nothing to report.
     let is_allowed = !is_shown && shows(deviation, bits, &WGSL);
@@ -137,7 +139,8 @@ fn blend(
     if !subject.known.blend_deviations.iter().any(|known| known.name == deviation.name) {
         return Ok(None);
     }
-    let found = catalogue.iter().enumerate().find_map(|(place, member)| Some((place, member.case(deviation.witness)?)));
+    let found =
+        catalogue.iter().enumerate().find_map(|(place, member)| Some((place, member.case(&deviation.witness)?)));
     let Some((place, CaseRef::Hard(hard))) = found else {
         unreachable!("a test finds the witness of {} among the hard cases", deviation.name)
     };
@@ -155,11 +158,7 @@ fn blend(
 
 /// Whether every probe whose recorded result breaks its promise still gives exactly the recorded result. This is only checked for drivers
 /// for which a recorded result is binding; for other drivers the deviation is permitted but not required.
-fn special(
-    deviation: &special_values::SpecialDeviation,
-    subject: &Subject,
-    code: &Code,
-) -> Result<Option<bool>, DeviceError> {
+fn special(deviation: &SpecialDeviation, subject: &Subject, code: &Code) -> Result<Option<bool>, DeviceError> {
     if subject.identity.backend != deviation.backend {
         return Ok(None);
     }
@@ -216,7 +215,7 @@ mod tests {
                     let case = catalogue.iter().find_map(|member| member.case(witness));
                     assert!(matches!(case, Some(CaseRef::Hard(_))), "{name}: {witness}");
                 }
-                NamedDeviation::Special(special_values::SpecialDeviation { name, probes, .. }) => {
+                NamedDeviation::Special(SpecialDeviation { name, probes, .. }) => {
                     let missing: Vec<_> = probes.iter().filter(|probe| Probe::by_name(probe).is_none()).collect();
                     assert!(!probes.is_empty() && missing.is_empty(), "{name}: {missing:?}");
                 }
@@ -229,8 +228,8 @@ mod tests {
         use lightmeter_arithmetic::profile::PROFILES;
         for deviation in devices::DEVIATIONS {
             #[expect(clippy::cast_possible_truncation, reason = "the value nearest to the exact one")]
-            let exact = deviation.builtin.exact(deviation.witness) as f32;
-            let promised = deviation.builtin.interval(deviation.witness, PROFILES[0]);
+            let exact = exact(deviation.builtin, deviation.witness) as f32;
+            let promised = interval(deviation.builtin, deviation.witness, PROFILES[0]);
             let shown = |value: f32| shows(deviation, value.to_bits(), PROFILES[0]);
             assert!(!shown(exact) && !shown(-exact) && !shown(f32::NAN) && !shown(1.01 * exact), "{}", deviation.name);
             // The first value beyond what is promised, on one side or the other: further ones are beyond what is granted.

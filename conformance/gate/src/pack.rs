@@ -8,8 +8,9 @@ use lightmeter_catalogue::cases::blend::Program;
 use lightmeter_catalogue::cases::{GENERATOR_VERSION, Input, Kind, Output, Spec, ValueShape};
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::Unique;
+use lightmeter_document::list::{ListedFormula, ListedValue};
 use lightmeter_document::made_by::{LayerRequest, MadeBy};
-use lightmeter_document::pack::{Choice, Listed, Manifest, PackedFormula, PackedScene, PackedValue, SCHEMA};
+use lightmeter_document::pack::{Choice, Listed, Manifest, PackedScene, SCHEMA};
 use lightmeter_document::protocol::{CaseRequest, ProbeRequest};
 use lightmeter_document::{Document as _, Number, Word};
 use lightmeter_files::{Whole, read};
@@ -30,28 +31,33 @@ pub const MOST_CASES: u64 = 10_000_000;
 const MOST_PIXELS: u32 = 8192;
 
 /// A formula of a plan, with the number of its cases.
-fn formula(plan: &GatePlan, formula: usize) -> PackedFormula {
-    PackedFormula { count: Some(plan.formulas[formula].count()), ..described(&plan.member(formula).spec) }
+fn formula(plan: &GatePlan, formula: usize) -> ListedFormula {
+    ListedFormula { count: Some(plan.formulas[formula].count()), ..described(&plan.member(formula).spec) }
 }
 
 /// A formula, what it takes and gives, and what computes it.
 #[must_use]
-pub fn described(spec: &Spec) -> PackedFormula {
-    let value = |name: &'static str, shape: ValueShape, unit: &'static str, means: &'static str| PackedValue {
+pub fn described(spec: &Spec) -> ListedFormula {
+    let value = |name: &'static str, shape: ValueShape, unit: &'static str, means: &'static str| ListedValue {
         name: name.into(),
         shape: shape.name().into(),
         unit: unit.into(),
         means: means.into(),
+        domain: None,
     };
     let input = |input: &Input| value(input.name, input.shape, input.unit, spec.input_means(input));
     let output = |output: &Output| value(output.name, output.shape, output.unit, spec.output_means(output));
-    PackedFormula {
+    ListedFormula {
         id: spec.id.clone(),
         formula: spec.text.into(),
         rules: spec.rules().into_iter().map(Word::from).collect(),
+        source: None,
         made_by: made_by(spec),
+        stages: vec![],
+        stable: None,
         inputs: spec.inputs.iter().map(input).collect(),
         outputs: spec.outputs.iter().map(output).collect(),
+        aliases: vec![],
         count: None,
     }
 }
@@ -438,8 +444,8 @@ pub fn read(folder: &Path) -> Result<GatePlan, PackError> {
 /// What of a manifest is not as this lightmeter would write it for the plan. The cases themselves go by the generator's version.
 fn difference(listed: &Manifest, plan: &GatePlan) -> Result<Option<&'static str>, PackError> {
     let own = manifest(plan)?;
-    let asked = |manifest: &Manifest| -> Vec<PackedFormula> {
-        manifest.formulas.iter().map(PackedFormula::without_explanations).collect()
+    let asked = |manifest: &Manifest| -> Vec<ListedFormula> {
+        manifest.formulas.iter().map(ListedFormula::without_explanations).collect()
     };
     if asked(listed) != asked(&own) {
         return Ok(Some("formulas"));

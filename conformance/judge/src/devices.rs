@@ -7,87 +7,53 @@
 use crate::blend_unit::model::BlendUnitModel;
 use lightmeter_arithmetic::profile::Excess;
 use lightmeter_arithmetic::{Accept, Profile};
+use lightmeter_document::Word;
+use lightmeter_document::adapters::{BlendDeviation, Builtin, Deviation};
 use lightmeter_reference::Real;
 use lightmeter_scene::target::TargetFormat;
-use serde::Serialize;
 
 /// A version of a driver: major, minor, patch.
 pub type Version = [u32; 3];
 
-/// The function that a deviation concerns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Builtin {
-    /// exp.
-    Exp,
-    /// exp2, and so pow.
-    Exp2,
-}
-
-impl Builtin {
-    /// The function of `probe.wgsl` that evaluates it alone.
-    #[must_use]
-    pub const fn probe(self) -> &'static str {
-        match self {
-            Self::Exp => "probe_exp",
-            Self::Exp2 => "probe_exp2",
-        }
-    }
-
-    /// What a profile makes legal at x.
-    #[must_use]
-    pub fn interval(self, x: f32, profile: &Profile) -> Accept {
-        let x: Accept = Accept::input(x);
-        profile.scope(|| match self {
-            Self::Exp => x.exp(),
-            Self::Exp2 => x.exp2(),
-        })
-    }
-
-    /// The exact value at x, correctly rounded to f64.
-    #[must_use]
-    pub fn exact(self, x: f32) -> f64 {
-        match self {
-            Self::Exp => core_math::exp(x.into()),
-            Self::Exp2 => core_math::exp2(x.into()),
-        }
+/// The function of `probe.wgsl` that evaluates a built-in function alone.
+#[must_use]
+pub const fn probe(builtin: Builtin) -> &'static str {
+    match builtin {
+        Builtin::Exp => "probe_exp",
+        Builtin::Exp2 => "probe_exp2",
     }
 }
 
-/// A known departure of a driver.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Deviation {
-    /// Its name in reports.
-    pub name: &'static str,
-    /// What the driver's own description contains.
-    pub driver: &'static str,
-    /// The first version concerned.
-    pub from: Version,
-    /// The first version no longer concerned.
-    pub until: Version,
-    /// Why, with the evidence.
-    pub reason: &'static str,
-    /// The function concerned.
-    pub builtin: Builtin,
-    /// Arguments from here …
-    pub low: f64,
-    /// … to here …
-    pub high: f64,
-    /// … are granted this many times the promised bound.
-    pub factor: f64,
-    /// An argument at which the driver is seen outside the promised bound.
-    pub witness: f32,
+/// What a profile makes legal of a built-in function at x.
+#[must_use]
+pub fn interval(builtin: Builtin, x: f32, profile: &Profile) -> Accept {
+    let x: Accept = Accept::input(x);
+    profile.scope(|| match builtin {
+        Builtin::Exp => x.exp(),
+        Builtin::Exp2 => x.exp2(),
+    })
+}
+
+/// The exact value of a built-in function at x, correctly rounded to f64.
+#[must_use]
+pub fn exact(builtin: Builtin, x: f32) -> f64 {
+    match builtin {
+        Builtin::Exp => core_math::exp(x.into()),
+        Builtin::Exp2 => core_math::exp2(x.into()),
+    }
 }
 
 /// Every known deviation.
-pub const DEVIATIONS: &[Deviation] = &[
+pub static DEVIATIONS: &[Deviation] = &[
     Deviation {
-        name: "llvmpipe-exp",
-        driver: "llvmpipe",
+        name: Word::Borrowed("llvmpipe-exp"),
+        driver: Word::Borrowed("llvmpipe"),
         from: [22, 3, 0],
         until: [22, 4, 0],
-        reason: "exp is exp2(x · log2 e) by a polynomial: of all floats in [−4, −2⁻⁸] 9,775 lie outside 3 + 2|x| ULP, \
+        reason: Word::Borrowed(
+            "exp is exp2(x · log2 e) by a polynomial: of all floats in [−4, −2⁻⁸] 9,775 lie outside 3 + 2|x| ULP, \
                  at most 1.130 times the bound, all between −0.0736 and −0.0280",
+        ),
         builtin: Builtin::Exp,
         low: -0.0736,
         high: -0.028,
@@ -95,12 +61,14 @@ pub const DEVIATIONS: &[Deviation] = &[
         witness: f32::from_bits(0xbd39_2a74),
     },
     Deviation {
-        name: "llvmpipe-exp2",
-        driver: "llvmpipe",
+        name: Word::Borrowed("llvmpipe-exp2"),
+        driver: Word::Borrowed("llvmpipe"),
         from: [22, 3, 0],
         until: [22, 4, 0],
-        reason: "exp2 by a polynomial: of all floats in [−4, −2⁻⁸] 4,304 lie outside 3 + 2|x| ULP, at most 1.106 times \
+        reason: Word::Borrowed(
+            "exp2 by a polynomial: of all floats in [−4, −2⁻⁸] 4,304 lie outside 3 + 2|x| ULP, at most 1.106 times \
                  the bound, all between −0.0993 and −0.0404",
+        ),
         builtin: Builtin::Exp2,
         low: -0.0993,
         high: -0.0404,
@@ -132,70 +100,43 @@ impl BlendModel {
     }
 }
 
-/// A known departure of a blend unit, of any version until it is no longer seen.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct BlendDeviation {
-    /// Its name in reports.
-    pub name: &'static str,
-    /// What the driver's own description contains.
-    pub driver: &'static str,
-    /// Why, with the evidence.
-    pub reason: &'static str,
-    /// On which target.
-    #[serde(skip)]
-    pub target: TargetFormat,
-    /// Results of at least this magnitude …
-    pub from: f64,
-    /// … are granted a NaN.
-    pub becomes_nan: bool,
-    /// A case in which the driver is seen to do so.
-    #[serde(skip)]
-    pub witness: &'static str,
-}
-
-/// Every known departure of a blend unit.
-pub const BLEND_DEVIATIONS: &[BlendDeviation] = &[BlendDeviation {
-    name: "swiftshader-half-overflow",
-    driver: "SwiftShader",
-    reason: "a result beyond 65504 is stored as a NaN of binary16: 1e6 as 0x7fff, 60000 + 60000 as 0x7f53",
+/// Every known departure of a blend unit, of any version until it is no longer seen.
+pub static BLEND_DEVIATIONS: &[BlendDeviation] = &[BlendDeviation {
+    name: Word::Borrowed("swiftshader-half-overflow"),
+    driver: Word::Borrowed("SwiftShader"),
+    reason: Word::Borrowed(
+        "a result beyond 65504 is stored as a NaN of binary16: 1e6 as 0x7fff, 60000 + 60000 as 0x7f53",
+    ),
     target: TargetFormat::Rgba16Float,
     // The least that does not round to 65504.
     from: 65_520.0,
     becomes_nan: true,
-    witness: "blend/add/hard/beyond-half",
+    witness: Word::Borrowed("blend/add/hard/beyond-half"),
 }];
 
-impl BlendDeviation {
-    /// Whether a result is one that it concerns.
-    #[must_use]
-    pub fn concerns(&self, target: TargetFormat, reference: f64) -> bool {
-        target == self.target && reference.abs() >= self.from
-    }
+/// Whether a result is one that a departure of a blend unit concerns.
+#[must_use]
+pub fn concerns_result(deviation: &BlendDeviation, target: TargetFormat, reference: f64) -> bool {
+    target == deviation.target && reference.abs() >= deviation.from
+}
 
-    /// Whether it makes a value legal.
-    #[must_use]
-    pub fn grants(&self, value: f64) -> bool {
-        self.becomes_nan && value.is_nan()
-    }
+/// Whether a departure of a blend unit makes a value legal.
+#[must_use]
+pub const fn grants(deviation: &BlendDeviation, value: f64) -> bool {
+    deviation.becomes_nan && value.is_nan()
 }
 
 fn concerns(driver: &str, part: &str, from: Version, until: Version) -> bool {
     driver.contains(part) && version(driver).is_some_and(|version| from <= version && version < until)
 }
 
-impl Deviation {
-    fn concerns(&self, driver: &str) -> bool {
-        concerns(driver, self.driver, self.from, self.until)
-    }
-
-    /// The profile with the deviation granted.
-    #[must_use]
-    pub fn grant(&self, profile: Profile) -> Profile {
-        let excess = Some(Excess { from: self.low, to: self.high, factor: self.factor });
-        match self.builtin {
-            Builtin::Exp => Profile { exp_excess: excess, ..profile },
-            Builtin::Exp2 => Profile { exp2_excess: excess, ..profile },
-        }
+/// A profile with a deviation granted.
+#[must_use]
+pub const fn grant(deviation: &Deviation, profile: Profile) -> Profile {
+    let excess = Some(Excess { from: deviation.low, to: deviation.high, factor: deviation.factor });
+    match deviation.builtin {
+        Builtin::Exp => Profile { exp_excess: excess, ..profile },
+        Builtin::Exp2 => Profile { exp2_excess: excess, ..profile },
     }
 }
 
@@ -226,7 +167,7 @@ impl Known {
     /// The same with all that its deviations are known for: what a mistake gives on it is within that.
     #[must_use]
     pub fn granted(&self, profile: &Profile) -> Profile {
-        self.deviations.iter().fold(self.profile(profile), |granted, deviation| deviation.grant(granted))
+        self.deviations.iter().fold(self.profile(profile), |granted, deviation| grant(deviation, granted))
     }
 }
 
@@ -242,8 +183,11 @@ pub fn known(device: &str, driver: &str) -> Known {
         // SwiftShader does not tell its version.
         special_record: llvmpipe.or(driver.contains("SwiftShader").then_some(("SwiftShader", false))),
         blend_model: BLEND_MODELS.iter().find(|known| known.concerns(&driver)).map(|known| known.model),
-        deviations: DEVIATIONS.iter().filter(|deviation| deviation.concerns(&driver)).collect(),
-        blend_deviations: BLEND_DEVIATIONS.iter().filter(|deviation| driver.contains(deviation.driver)).collect(),
+        deviations: DEVIATIONS
+            .iter()
+            .filter(|known| concerns(&driver, &known.driver, known.from, known.until))
+            .collect(),
+        blend_deviations: BLEND_DEVIATIONS.iter().filter(|deviation| driver.contains(&*deviation.driver)).collect(),
     }
 }
 

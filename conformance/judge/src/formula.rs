@@ -2,7 +2,7 @@
 
 use crate::cases::{Answers, CaseTally, ExpectedFailure, Unanswered};
 use crate::chunk::{Chunk, TASK};
-use crate::devices::Known;
+use crate::devices::{Known, grant};
 use crate::kept::KeptRow;
 use crate::sample::Sample;
 use crate::tally::{KEPT, Tally};
@@ -283,10 +283,10 @@ fn excuse(
     let member = chunk.members[chunk.of[case]];
     by.known.deviations.iter().find_map(|deviation| {
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
-        let granted = deviation.grant(*by.profile);
+        let granted = grant(deviation, *by.profile);
         intervals(member, chunk.inputs_of(case), stage, by.known, &granted, &mut legal);
         let reference = chunk.references[case * legal.len() + output];
-        (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(deviation.name)
+        (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(&*deviation.name)
     })
 }
 

@@ -4,7 +4,7 @@ use lightmeter_arithmetic::Accept;
 use lightmeter_catalogue::cases::{AnyFormula, Size, Spec};
 use lightmeter_catalogue::select::Member;
 use lightmeter_document::Number;
-use serde::Serialize;
+use lightmeter_document::show::{Conditioning, FormStanding};
 
 /// A rounding to nearest of a number near 1, at most.
 pub const ROUNDING: f64 = 1.0 / 16_777_216.0;
@@ -55,23 +55,6 @@ pub fn condition(formula: &dyn AnyFormula, inputs: &[f32], size: Size) -> f64 {
     if moved == 0.0 { 0.0 } else { moved / size_of(&values, size) }
 }
 
-/// What a form's legal values say of it at a case, apart from any renderer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FormStanding {
-    /// The result moves by no more than a few roundings, and so do the legal values.
-    Stable,
-    /// A rounding of each input moves the result by more than [`ILL_CONDITIONED`] roundings of the result, so if the inputs have been
-    /// rounded beforehand no method can do better.
-    IllConditioned,
-    /// The legal values reach farther than [`UNSTABLE`] times what the condition explains: the fault of the form.
-    Unstable,
-    /// The rules permit anything, though the result is a number: the fault of the form.
-    NothingPromised,
-    /// The formula has no value here, or the smallest change of an input changes its value completely.
-    Singular,
-}
-
 /// Ten bits are lost by the inputs' own rounding.
 pub const ILL_CONDITIONED: f64 = 1024.0;
 
@@ -80,84 +63,69 @@ pub const ILL_CONDITIONED: f64 = 1024.0;
 /// differences, which are.
 pub const UNSTABLE: f64 = 256.0;
 
-/// How well a case can be computed, and how well a form promises to.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Conditioning {
-    /// How many roundings of the result come of one rounding of each input.
-    pub condition: Number,
-    /// How many roundings the legal values reach from the reference; infinite where anything is legal.
-    pub reach: Number,
-    /// What follows.
-    pub standing: FormStanding,
+/// How well a formula can be computed at a case, and how well it promises to, by its legal values in force; `near` are inputs a few ULP away.
+#[must_use]
+pub fn conditioning(member: &Member, inputs: &[f32], legal: &[Accept], near: &[Vec<f32>]) -> Conditioning {
+    let size = size(&member.spec);
+    let mut exact = vec![0.0; member.spec.output_len()];
+    member.formula.reference(inputs, &mut exact);
+    let condition = condition(member.formula.as_ref(), inputs, size);
+    let farthest = exact
+        .iter()
+        .zip(legal)
+        .map(|(x, legal)| if legal.is_any() { f64::INFINITY } else { (x - legal.low()).max(legal.high() - x) });
+    let farthest = norm(farthest);
+    let reach = if farthest == 0.0 { 0.0 } else { farthest / (ROUNDING * size_of(&exact, size)) };
+    let is_number = exact.iter().all(|x| x.is_finite());
+    // Derivatives do not show jumps, so nearby inputs are evaluated too: a change of a few ULP in each input should move the result by
+    // at most some tens of roundings times the condition.
+    let jumps = near.iter().any(|row| {
+        let mut there = vec![0.0; exact.len()];
+        member.formula.reference(row, &mut there);
+        roundings(&there, &exact, size) > UNSTABLE * (1.0 + condition)
+    });
+    let standing = if !is_number || !condition.is_finite() || jumps {
+        FormStanding::Singular
+    } else if reach.is_nan() || reach.is_infinite() {
+        FormStanding::NothingPromised
+    } else if reach > UNSTABLE * (1.0 + condition) {
+        FormStanding::Unstable
+    } else if condition > ILL_CONDITIONED {
+        FormStanding::IllConditioned
+    } else {
+        FormStanding::Stable
+    };
+    Conditioning { condition: Number(condition), reach: Number(reach), standing }
 }
 
-impl Conditioning {
-    /// Of a formula at a case, by its legal values in force; `near` are inputs a few ULP away.
-    #[must_use]
-    pub fn of(member: &Member, inputs: &[f32], legal: &[Accept], near: &[Vec<f32>]) -> Self {
-        let size = size(&member.spec);
-        let mut exact = vec![0.0; member.spec.output_len()];
-        member.formula.reference(inputs, &mut exact);
-        let condition = condition(member.formula.as_ref(), inputs, size);
-        let farthest = exact
-            .iter()
-            .zip(legal)
-            .map(|(x, legal)| if legal.is_any() { f64::INFINITY } else { (x - legal.low()).max(legal.high() - x) });
-        let farthest = norm(farthest);
-        let reach = if farthest == 0.0 { 0.0 } else { farthest / (ROUNDING * size_of(&exact, size)) };
-        let is_number = exact.iter().all(|x| x.is_finite());
-        // Derivatives do not show jumps, so nearby inputs are evaluated too: a change of a few ULP in each input should move the result by
-        // at most some tens of roundings times the condition.
-        let jumps = near.iter().any(|row| {
-            let mut there = vec![0.0; exact.len()];
-            member.formula.reference(row, &mut there);
-            roundings(&there, &exact, size) > UNSTABLE * (1.0 + condition)
-        });
-        let standing = if !is_number || !condition.is_finite() || jumps {
-            FormStanding::Singular
-        } else if reach.is_nan() || reach.is_infinite() {
-            FormStanding::NothingPromised
-        } else if reach > UNSTABLE * (1.0 + condition) {
-            FormStanding::Unstable
-        } else if condition > ILL_CONDITIONED {
-            FormStanding::IllConditioned
+/// The same in a line.
+#[must_use]
+pub fn text(of: &Conditioning) -> String {
+    let rounded = |x: Number| {
+        if x.0 >= 1e5 {
+            format!("{:.1e}", x.0)
+        } else if x.0 < 10.0 {
+            format!("{:.2}", x.0)
         } else {
-            FormStanding::Stable
-        };
-        Self { condition: Number(condition), reach: Number(reach), standing }
-    }
-
-    /// In a line.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let rounded = |x: Number| {
-            if x.0 >= 1e5 {
-                format!("{:.1e}", x.0)
-            } else if x.0 < 10.0 {
-                format!("{:.2}", x.0)
-            } else {
-                format!("{:.0}", x.0)
-            }
-        };
-        let (condition, reach) = (rounded(self.condition), rounded(self.reach));
-        let times = rounded(Number(self.reach.0 / (1.0 + self.condition.0)));
-        let moves = format!("a rounding of each input moves the result by {condition} of its own");
-        match self.standing {
-            FormStanding::Stable => format!("{moves}; legal values reach {reach}: stable"),
-            FormStanding::IllConditioned => {
-                format!(
-                    "{moves}; legal values reach {reach}: ill-conditioned: with inputs that were rounded no method can do better"
-                )
-            }
-            FormStanding::Unstable => {
-                format!(
-                    "{moves}; legal values reach {reach}, {times} times what that explains: unstable, the fault of the form"
-                )
-            }
-            FormStanding::NothingPromised => format!("{moves}; yet anything is legal: the fault of the form"),
-            FormStanding::Singular => {
-                "there is no value here, or the least change of an input makes another of it".into()
-            }
+            format!("{:.0}", x.0)
         }
+    };
+    let (condition, reach) = (rounded(of.condition), rounded(of.reach));
+    let times = rounded(Number(of.reach.0 / (1.0 + of.condition.0)));
+    let moves = format!("a rounding of each input moves the result by {condition} of its own");
+    match of.standing {
+        FormStanding::Stable => format!("{moves}; legal values reach {reach}: stable"),
+        FormStanding::IllConditioned => {
+            format!(
+                "{moves}; legal values reach {reach}: ill-conditioned: with inputs that were rounded no method can do better"
+            )
+        }
+        FormStanding::Unstable => {
+            format!(
+                "{moves}; legal values reach {reach}, {times} times what that explains: unstable, the fault of the form"
+            )
+        }
+        FormStanding::NothingPromised => format!("{moves}; yet anything is legal: the fault of the form"),
+        FormStanding::Singular => "there is no value here, or the least change of an input makes another of it".into(),
     }
 }

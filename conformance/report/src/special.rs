@@ -2,7 +2,7 @@
 
 use lightmeter_document::report::Identity;
 use lightmeter_document::special::{
-    ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, PromiseDeviation, SpecialReport,
+    ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, SpecialDeviation, SpecialReport,
 };
 use std::fmt::{Result, Write};
 
@@ -33,7 +33,7 @@ pub fn write(report: &SpecialReport, out: &mut impl Write) -> Result {
     for ProbeSource { section, says } in &report.sources {
         writeln!(out, "{section}: {says}")?;
     }
-    for PromiseDeviation { name, backend, reason, .. } in &report.deviations {
+    for SpecialDeviation { name, backend, reason, .. } in &report.deviations {
         if report.adapters.iter().any(|adapter| adapter.backend == *backend) {
             writeln!(out, "deviation {name} on {backend}: {reason}")?;
         }

@@ -5,9 +5,10 @@ use super::{Status, foreign};
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
 use lightmeter::cases::Spec;
+use lightmeter::document::report::FoundBy;
 use lightmeter::document::report::JudgedAs;
 use lightmeter::select::catalogue;
-use lightmeter_adapt::bind::{Bound, Found, ShaderBinding, bind};
+use lightmeter_adapt::bind::{Bound, ShaderBinding, bind};
 use lightmeter_adapt::source::ShaderSource;
 use lightmeter_adapt::{AdaptError, MOST_TURNS, Part, ShaderProgram, replaced};
 use lightmeter_gpu::Shaders;
@@ -44,7 +45,7 @@ impl Adapt {
                 own.into_iter().map(|spec| Ok((spec, bind(&program, spec, &asked)?))).partition(Result::is_ok);
             // What has no input in it would be judged as anything.
             let has_input = |found: &Result<(&Spec, ShaderBinding), AdaptError>| {
-                found.as_ref().is_ok_and(|(_, binding)| binding.bound.iter().any(|bound| bound.found != Found::Fixed))
+                found.as_ref().is_ok_and(|(_, binding)| binding.bound.iter().any(|bound| bound.found != FoundBy::Fixed))
             };
             if !bound.is_empty() && !bound.iter().any(has_input) {
                 bail!(
@@ -149,9 +150,9 @@ fn tell(
         .unwrap_or(0);
     for bound in binding.bound.iter().filter(|bound| !bound.is_further) {
         let found = match bound.found {
-            Found::Asked => "  (as you say)",
-            Found::Fixed => "  (given by the pipeline, or not used)",
-            Found::SameName | Found::Synonym => "",
+            FoundBy::Asked => "  (as you say)",
+            FoundBy::Fixed => "  (given by the pipeline, or not used)",
+            FoundBy::SameName | FoundBy::Synonym => "",
         };
         writeln!(out, "  {:width$}  {}{found}", bound.name, shortened(&bound.expression))?;
     }
@@ -187,7 +188,7 @@ fn tell(
 
 /// Variables that are taken to be the same input, which may be more than is meant.
 fn alike(binding: &ShaderBinding) -> Vec<(&str, &str, &str)> {
-    let told = |bound: &&Bound| matches!(bound.found, Found::SameName | Found::Synonym) && !bound.is_further;
+    let told = |bound: &&Bound| matches!(bound.found, FoundBy::SameName | FoundBy::Synonym) && !bound.is_further;
     let told: Vec<&Bound> = binding.bound.iter().filter(told).collect();
     let mut found = vec![];
     for (k, one) in told.iter().enumerate() {

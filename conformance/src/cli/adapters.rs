@@ -6,11 +6,9 @@ use super::terminal::level;
 use clap::Args;
 use lightmeter::adapters::{BROWSER, CHROMIUM, EMBEDDED};
 use lightmeter::browser::chromium_program;
-use lightmeter::devices::{BlendDeviation, Builtin, Deviation, known};
+use lightmeter::devices::known;
 use lightmeter::document::Document as _;
-use lightmeter::document::adapters::{
-    AccuracyDeviation, AdaptersDocument, BlendUnitDeviation, BuiltinFunction, ListedAdapter, SCHEMA,
-};
+use lightmeter::document::adapters::{AdaptersDocument, ListedAdapter, SCHEMA};
 use lightmeter::report::Level;
 use lightmeter_gpu::Adapter;
 use std::fmt::Write as _;
@@ -42,8 +40,8 @@ impl Adapters {
                 for a in &found {
                     writeln!(text, "{:<14} {:<7} {}  {}", a.name, a.backend, a.device, a.driver)?;
                     let known = known(&a.device, &a.driver);
-                    let deviations = known.deviations.iter().map(|deviation| (deviation.name, deviation.reason));
-                    let blending = known.blend_deviations.iter().map(|deviation| (deviation.name, deviation.reason));
+                    let deviations = known.deviations.iter().map(|deviation| (&deviation.name, &deviation.reason));
+                    let blending = known.blend_deviations.iter().map(|deviation| (&deviation.name, &deviation.reason));
                     for (name, reason) in deviations.chain(blending) {
                         writeln!(text, "  deviates: {name}: {reason}")?;
                     }
@@ -78,36 +76,8 @@ fn listed(adapter: &Adapter) -> ListedAdapter {
         driver: adapter.driver.clone(),
         is_cpu: adapter.is_cpu,
         subpixel_bits: known.subpixel_bits,
-        deviations: known.deviations.iter().map(|&one| accuracy(one)).collect(),
+        deviations: known.deviations.into_iter().cloned().collect(),
         blend_model: known.blend_model.map(|model| model.name().into()),
-        blend_deviations: known.blend_deviations.iter().map(|&one| blending(one)).collect(),
-    }
-}
-
-fn accuracy(deviation: &Deviation) -> AccuracyDeviation {
-    AccuracyDeviation {
-        name: deviation.name.into(),
-        driver: deviation.driver.into(),
-        from: deviation.from,
-        until: deviation.until,
-        reason: deviation.reason.into(),
-        builtin: match deviation.builtin {
-            Builtin::Exp => BuiltinFunction::Exp,
-            Builtin::Exp2 => BuiltinFunction::Exp2,
-        },
-        low: deviation.low,
-        high: deviation.high,
-        factor: deviation.factor,
-        witness: deviation.witness.into(),
-    }
-}
-
-fn blending(deviation: &BlendDeviation) -> BlendUnitDeviation {
-    BlendUnitDeviation {
-        name: deviation.name.into(),
-        driver: deviation.driver.into(),
-        reason: deviation.reason.into(),
-        from: deviation.from,
-        becomes_nan: deviation.becomes_nan,
+        blend_deviations: known.blend_deviations.into_iter().cloned().collect(),
     }
 }

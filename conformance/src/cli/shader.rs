@@ -10,14 +10,14 @@ use lightmeter::bench::OwnShader as Beside;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
 use lightmeter::document::hash;
-use lightmeter::document::report::{BoundVariable, FoundBy, HeldInput, JudgedAs, MistakePlace, Report, ShaderUse};
+use lightmeter::document::report::{BoundVariable, HeldInput, JudgedAs, MistakePlace, Report, ShaderUse};
 use lightmeter::faults::{Fault, Touched};
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
 use lightmeter::report::Level;
 use lightmeter::select::{Member, Shard, catalogue, select};
 use lightmeter::subject_gpu::{code_of, shaders_of};
-use lightmeter_adapt::bind::{AskedBinding, Bound, Found, ShaderBinding};
+use lightmeter_adapt::bind::{AskedBinding, Bound, ShaderBinding};
 use lightmeter_adapt::constant::numbers;
 use lightmeter_adapt::place::{line_of_step, line_of_variable};
 use lightmeter_adapt::source::Language;
@@ -423,12 +423,7 @@ impl OwnShader {
         let variable = |bound: &Bound| BoundVariable {
             name: bound.name.clone(),
             is: bound.expression.clone(),
-            found: match bound.found {
-                Found::Asked => FoundBy::Asked,
-                Found::SameName => FoundBy::SameName,
-                Found::Synonym => FoundBy::Synonym,
-                Found::Fixed => FoundBy::Fixed,
-            },
+            found: bound.found,
         };
         let is_given = |(name, value): &(_, Option<_>)| value.is_none().then(|| ToString::to_string(name));
         JudgedAs {

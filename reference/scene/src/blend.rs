@@ -3,88 +3,48 @@
 //! A [`State`] is a pair of factors and an equation, of which there are 15 × 15 × 5. Colour and alpha have one each: alike, or
 //! [`Separate`].
 
+use crate::words::words;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What multiplies the source (`S`) or the destination (`D`) colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Factor {
-    /// 0
-    Zero,
-    /// 1
-    One,
-    /// Cs; As
-    SrcColor,
-    /// 1 − Cs; 1 − As
-    OneMinusSrcColor,
-    /// Cd; Ad
-    DstColor,
-    /// 1 − Cd; 1 − Ad
-    OneMinusDstColor,
-    /// As
-    SrcAlpha,
-    /// 1 − As
-    OneMinusSrcAlpha,
-    /// Ad
-    DstAlpha,
-    /// 1 − Ad
-    OneMinusDstAlpha,
-    /// Cc; Ac
-    ConstantColor,
-    /// 1 − Cc; 1 − Ac
-    OneMinusConstantColor,
-    /// Ac
-    ConstantAlpha,
-    /// 1 − Ac
-    OneMinusConstantAlpha,
-    /// min(As, 1 − Ad); 1
-    SrcAlphaSaturate,
+words! {
+    /// What multiplies the source (`S`) or the destination (`D`) colour.
+    pub enum Factor {
+        /// 0
+        Zero = "zero",
+        /// 1
+        One = "one",
+        /// Cs; As
+        SrcColor = "src-color",
+        /// 1 − Cs; 1 − As
+        OneMinusSrcColor = "one-minus-src-color",
+        /// Cd; Ad
+        DstColor = "dst-color",
+        /// 1 − Cd; 1 − Ad
+        OneMinusDstColor = "one-minus-dst-color",
+        /// As
+        SrcAlpha = "src-alpha",
+        /// 1 − As
+        OneMinusSrcAlpha = "one-minus-src-alpha",
+        /// Ad
+        DstAlpha = "dst-alpha",
+        /// 1 − Ad
+        OneMinusDstAlpha = "one-minus-dst-alpha",
+        /// Cc; Ac
+        ConstantColor = "constant-color",
+        /// 1 − Cc; 1 − Ac
+        OneMinusConstantColor = "one-minus-constant-color",
+        /// Ac
+        ConstantAlpha = "constant-alpha",
+        /// 1 − Ac
+        OneMinusConstantAlpha = "one-minus-constant-alpha",
+        /// min(As, 1 − Ad); 1
+        SrcAlphaSaturate = "src-alpha-saturate",
+    }
 }
 
 impl Factor {
-    /// All 15, in the order of their codes.
-    pub const ALL: [Self; 15] = [
-        Self::Zero,
-        Self::One,
-        Self::SrcColor,
-        Self::OneMinusSrcColor,
-        Self::DstColor,
-        Self::OneMinusDstColor,
-        Self::SrcAlpha,
-        Self::OneMinusSrcAlpha,
-        Self::DstAlpha,
-        Self::OneMinusDstAlpha,
-        Self::ConstantColor,
-        Self::OneMinusConstantColor,
-        Self::ConstantAlpha,
-        Self::OneMinusConstantAlpha,
-        Self::SrcAlphaSaturate,
-    ];
-
-    /// The name used in case ids, JSON and reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Zero => "zero",
-            Self::One => "one",
-            Self::SrcColor => "src-color",
-            Self::OneMinusSrcColor => "one-minus-src-color",
-            Self::DstColor => "dst-color",
-            Self::OneMinusDstColor => "one-minus-dst-color",
-            Self::SrcAlpha => "src-alpha",
-            Self::OneMinusSrcAlpha => "one-minus-src-alpha",
-            Self::DstAlpha => "dst-alpha",
-            Self::OneMinusDstAlpha => "one-minus-dst-alpha",
-            Self::ConstantColor => "constant-color",
-            Self::OneMinusConstantColor => "one-minus-constant-color",
-            Self::ConstantAlpha => "constant-alpha",
-            Self::OneMinusConstantAlpha => "one-minus-constant-alpha",
-            Self::SrcAlphaSaturate => "src-alpha-saturate",
-        }
-    }
-
     /// What it is in the colour, and in the alpha.
     #[must_use]
     pub const fn formulas(self) -> [&'static str; 2] {
@@ -107,12 +67,6 @@ impl Factor {
         }
     }
 
-    /// Its place in [`Factor::ALL`], which is the selector that the shaders take.
-    #[must_use]
-    pub const fn code(self) -> u32 {
-        self as u32
-    }
-
     /// Whether it reads the blend constant's colour in its RGB part.
     #[must_use]
     pub const fn reads_constant_color(self) -> bool {
@@ -126,44 +80,23 @@ impl Factor {
     }
 }
 
-/// How the two products are combined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Equation {
-    /// Cs·S + Cd·D
-    Add,
-    /// Cs·S − Cd·D
-    Subtract,
-    /// Cd·D − Cs·S
-    ReverseSubtract,
-    /// min(Cs, Cd), factors ignored
-    Min,
-    /// max(Cs, Cd), factors ignored
-    Max,
+words! {
+    /// How the two products are combined.
+    pub enum Equation {
+        /// Cs·S + Cd·D
+        Add = "add",
+        /// Cs·S − Cd·D
+        Subtract = "subtract",
+        /// Cd·D − Cs·S
+        ReverseSubtract = "reverse-subtract",
+        /// min(Cs, Cd), factors ignored
+        Min = "min",
+        /// max(Cs, Cd), factors ignored
+        Max = "max",
+    }
 }
 
 impl Equation {
-    /// All 5, in the order of their codes.
-    pub const ALL: [Self; 5] = [Self::Add, Self::Subtract, Self::ReverseSubtract, Self::Min, Self::Max];
-
-    /// The name used in case ids, JSON and reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Add => "add",
-            Self::Subtract => "subtract",
-            Self::ReverseSubtract => "reverse-subtract",
-            Self::Min => "min",
-            Self::Max => "max",
-        }
-    }
-
-    /// Its place in [`Equation::ALL`], which is the selector that the shaders take.
-    #[must_use]
-    pub const fn code(self) -> u32 {
-        self as u32
-    }
-
     /// MIN and MAX do not read the factors.
     #[must_use]
     pub const fn ignores_factors(self) -> bool {
@@ -307,33 +240,18 @@ impl fmt::Display for WriteMask {
     }
 }
 
-/// How a state reaches a blend unit, which in WebGPU has no factor of the constant's alpha.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Route {
-    /// The unit's own factors.
-    Native,
-    /// The constant's alpha given as all four components of the constant.
-    ConstantReplicated,
-    /// The source's colour multiplied by its constant factor in the shader, and ONE in the unit: one side reads the
-    /// constant's colour and the other its alpha. On a unorm target the source is clamped first, as the unit would have.
-    FoldedIntoSource,
-    /// The same states with the constant's alpha as the alpha of a second source colour.
-    DualSource,
-}
-
-impl Route {
-    /// All, in the order of reports.
-    pub const ALL: [Self; 4] = [Self::Native, Self::ConstantReplicated, Self::FoldedIntoSource, Self::DualSource];
-
-    /// The name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Native => "native",
-            Self::ConstantReplicated => "constant-replicated",
-            Self::FoldedIntoSource => "folded-into-source",
-            Self::DualSource => "dual-source",
-        }
+words! {
+    /// How a state reaches a blend unit, which in WebGPU has no factor of the constant's alpha.
+    pub enum Route {
+        /// The unit's own factors.
+        Native = "native",
+        /// The constant's alpha given as all four components of the constant.
+        ConstantReplicated = "constant-replicated",
+        /// The source's colour multiplied by its constant factor in the shader, and ONE in the unit: one side reads the
+        /// constant's colour and the other its alpha. On a unorm target the source is clamped first, as the unit would have.
+        FoldedIntoSource = "folded-into-source",
+        /// The same states with the constant's alpha as the alpha of a second source colour.
+        DualSource = "dual-source",
     }
 }
 

@@ -1,63 +1,31 @@
 //! Depth tests, as OpenGL, Vulkan and WebGPU name them.
 
+use crate::words::words;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// When a fragment's depth passes against the depth that is stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Compare {
-    /// Never.
-    Never,
-    /// new < old
-    Less,
-    /// new = old
-    Equal,
-    /// new ≤ old
-    LessEqual,
-    /// new > old
-    Greater,
-    /// new ≠ old
-    NotEqual,
-    /// new ≥ old
-    GreaterEqual,
-    /// Always.
-    Always,
-}
-
-impl Compare {
-    /// All 8, in the order of their codes.
-    pub const ALL: [Self; 8] = [
-        Self::Never,
-        Self::Less,
-        Self::Equal,
-        Self::LessEqual,
-        Self::Greater,
-        Self::NotEqual,
-        Self::GreaterEqual,
-        Self::Always,
-    ];
-
-    /// The name used in case ids, JSON and reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Never => "never",
-            Self::Less => "less",
-            Self::Equal => "equal",
-            Self::LessEqual => "less-equal",
-            Self::Greater => "greater",
-            Self::NotEqual => "not-equal",
-            Self::GreaterEqual => "greater-equal",
-            Self::Always => "always",
-        }
-    }
-
-    /// Its place in [`Compare::ALL`], which is the selector that the shaders take: bit 0 passes less, bit 1 equal, bit 2
-    /// greater.
-    #[must_use]
-    pub const fn code(self) -> u32 {
-        self as u32
+words! {
+    /// When a fragment's depth passes against the depth that is stored. Bit 0 of its code passes less, bit 1 equal, bit 2 greater.
+    #[derive(Default)]
+    pub enum Compare {
+        /// Never.
+        Never = "never",
+        /// new < old
+        #[default]
+        Less = "less",
+        /// new = old
+        Equal = "equal",
+        /// new ≤ old
+        LessEqual = "less-equal",
+        /// new > old
+        Greater = "greater",
+        /// new ≠ old
+        NotEqual = "not-equal",
+        /// new ≥ old
+        GreaterEqual = "greater-equal",
+        /// Always.
+        Always = "always",
     }
 }
 

@@ -9,6 +9,7 @@ use crate::depth::DepthTest;
 use crate::raster::Provoking;
 use crate::shading::{Ambient, Distance, Frequency, LightAmbient, Normals, Specular, SpecularGate, Viewer};
 use crate::target::TargetFormat;
+use crate::words::words;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -295,22 +296,28 @@ pub struct Sampled {
     pub wrap: Wrap,
 }
 
-/// What is read between the middles of texels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum TextureFilter {
-    /// The texel that the coordinates lie in.
-    Nearest,
-    /// The four around, mixed by their distances.
-    Bilinear,
+words! {
+    /// What is read between the middles of texels.
+    #[derive(Default)]
+    pub enum TextureFilter {
+        /// The texel that the coordinates lie in.
+        Nearest = "nearest",
+        /// The four around, mixed by their distances.
+        #[default]
+        Bilinear = "bilinear",
+    }
 }
 
-/// What is read beyond a texture's edges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Wrap {
-    /// The texture again.
-    Repeat,
-    /// The texel at the edge.
-    Clamp,
+words! {
+    /// What is read beyond a texture's edges.
+    #[derive(Default)]
+    pub enum Wrap {
+        /// The texture again.
+        #[default]
+        Repeat = "repeat",
+        /// The texel at the edge.
+        Clamp = "clamp",
+    }
 }
 
 /// A blend state with its constant.
@@ -323,13 +330,16 @@ pub struct Blend {
     pub constant: [f32; 4],
 }
 
-/// Which faces are not drawn. The front is counter-clockwise as seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Cull {
-    /// All are drawn.
-    None,
-    /// Back faces.
-    Back,
-    /// Front faces.
-    Front,
+words! {
+    /// Which faces are not drawn. The front is counter-clockwise as seen.
+    #[derive(Default)]
+    pub enum Cull {
+        /// All are drawn.
+        #[default]
+        None = "none",
+        /// Back faces.
+        Back = "back",
+        /// Front faces.
+        Front = "front",
+    }
 }

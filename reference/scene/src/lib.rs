@@ -13,3 +13,4 @@ pub mod raster;
 pub mod shading;
 pub mod stage;
 pub mod target;
+mod words;

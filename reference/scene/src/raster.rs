@@ -1,47 +1,27 @@
 //! Primitive topologies, the vertex that a flat attribute is taken from, and the cases of the rasteriser.
 
 use crate::depth::Compare;
+use crate::words::words;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How a stream of vertices is read as primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Topology {
-    /// Every vertex a point.
-    Points,
-    /// Every two vertices a line.
-    LineList,
-    /// Every vertex after the first a line from the one before it.
-    LineStrip,
-    /// Every three vertices a triangle.
-    TriangleList,
-    /// Every vertex after the second a triangle with the two before it.
-    TriangleStrip,
+words! {
+    /// How a stream of vertices is read as primitives.
+    pub enum Topology {
+        /// Every vertex a point.
+        Points = "points",
+        /// Every two vertices a line.
+        LineList = "line-list",
+        /// Every vertex after the first a line from the one before it.
+        LineStrip = "line-strip",
+        /// Every three vertices a triangle.
+        TriangleList = "triangle-list",
+        /// Every vertex after the second a triangle with the two before it.
+        TriangleStrip = "triangle-strip",
+    }
 }
 
 impl Topology {
-    /// All of them, in the order of their codes.
-    pub const ALL: [Self; 5] = [Self::Points, Self::LineList, Self::LineStrip, Self::TriangleList, Self::TriangleStrip];
-
-    /// The name used in case ids, JSON and reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::LineList => "line-list",
-            Self::LineStrip => "line-strip",
-            Self::TriangleList => "triangle-list",
-            Self::TriangleStrip => "triangle-strip",
-        }
-    }
-
-    /// Its place in [`Topology::ALL`], which is the selector that the shaders take.
-    #[must_use]
-    pub const fn code(self) -> u32 {
-        self as u32
-    }
-
     /// Vertices in a primitive.
     #[must_use]
     pub const fn corners(self) -> u32 {
@@ -53,26 +33,15 @@ impl Topology {
     }
 }
 
-/// The vertex of a primitive whose value a flat attribute takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Provoking {
-    /// The first vertex: WebGPU's and Vulkan's convention.
-    First,
-    /// The last vertex: OpenGL's default.
-    Last,
-}
-
-impl Provoking {
-    /// Both conventions.
-    pub const ALL: [Self; 2] = [Self::First, Self::Last];
-
-    /// The name used in case ids, JSON and reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::First => "first",
-            Self::Last => "last",
-        }
+words! {
+    /// The vertex of a primitive whose value a flat attribute takes.
+    #[derive(Default)]
+    pub enum Provoking {
+        /// The first vertex: WebGPU's and Vulkan's convention.
+        First = "first",
+        /// The last vertex: OpenGL's default.
+        #[default]
+        Last = "last",
     }
 }
 

@@ -1,18 +1,23 @@
 //! The formats of colour targets.
 
-/// A format that colours are blended on and stored in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum TargetFormat {
-    /// Four binary32 components.
-    Rgba32Float,
-    /// Four binary16 components.
-    Rgba16Float,
-    /// Four components of 8 bits, 0 to 255 for 0 to 1.
-    Rgba8Unorm,
-    /// The same with red, green and blue encoded as IEC 61966-2-1 has it; alpha is linear.
-    Rgba8UnormSrgb,
-    /// Four components of 8 bits, stored blue first.
-    Bgra8Unorm,
+use crate::words::words;
+
+words! {
+    /// A format that colours are blended on and stored in.
+    #[derive(Default)]
+    pub enum TargetFormat {
+        /// Four binary32 components.
+        Rgba32Float = "rgba32float",
+        /// Four binary16 components.
+        Rgba16Float = "rgba16float",
+        /// Four components of 8 bits, 0 to 255 for 0 to 1.
+        #[default]
+        Rgba8Unorm = "rgba8unorm",
+        /// The same with red, green and blue encoded as IEC 61966-2-1 has it; alpha is linear.
+        Rgba8UnormSrgb = "rgba8unorm-srgb",
+        /// Four components of 8 bits, stored blue first.
+        Bgra8Unorm = "bgra8unorm",
+    }
 }
 
 /// How a target holds a component.
@@ -29,28 +34,6 @@ pub enum Encoding {
 }
 
 impl TargetFormat {
-    /// All, in the order of reports.
-    pub const ALL: [Self; 5] =
-        [Self::Rgba32Float, Self::Rgba16Float, Self::Rgba8Unorm, Self::Rgba8UnormSrgb, Self::Bgra8Unorm];
-
-    /// WebGPU's name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rgba32Float => "rgba32float",
-            Self::Rgba16Float => "rgba16float",
-            Self::Rgba8Unorm => "rgba8unorm",
-            Self::Rgba8UnormSrgb => "rgba8unorm-srgb",
-            Self::Bgra8Unorm => "bgra8unorm",
-        }
-    }
-
-    /// The format of that name.
-    #[must_use]
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| format.name() == name)
-    }
-
     /// How it holds a component.
     #[inline]
     #[must_use]

@@ -2,6 +2,7 @@
 
 use super::program::Program;
 use super::{meaning, rule};
+pub use lightmeter_document::list::Domain;
 use lightmeter_scene::depth::DepthTest;
 use lightmeter_scene::raster::Raster;
 
@@ -91,53 +92,6 @@ impl ValueShape {
             Self::Vec4 => 4,
             Self::Mat3 => 9,
             Self::Mat4 => 16,
-        }
-    }
-}
-
-/// What random cases draw an input from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Domain {
-    /// Evenly from low to high, each component.
-    Uniform(f32, f32),
-    /// Evenly in the logarithm, each component.
-    LogUniform(f32, f32),
-    /// Colour components: evenly from 0 to 1, now and then exactly 0 or 1.
-    Unit,
-    /// A unit vector, as near as f32 holds one.
-    Direction,
-    /// A vector of any direction and of a length drawn evenly in the logarithm.
-    Vector(f32, f32),
-    /// Barycentric weights: they sum to 1 as nearly as f32 allows.
-    Weights,
-    /// Whole numbers, the ends included.
-    Whole(u32, u32),
-    /// Multiples of 1/2 from low to high.
-    Halves(f32, f32),
-    /// A rotation, a scale of each axis drawn evenly in the logarithm, mirrored half the time, and a shear; in a 4 × 4
-    /// matrix also a translation and a last row near (0, 0, 0, 1).
-    Transform(f32, f32),
-    /// A vertex in clip coordinates: its place 8 to 60 pixels from the case's pixel, w from 0.5 to 8.
-    Around,
-    /// A pixel of the middle of the rasteriser's target, another for each of 16,384 consecutive cases.
-    Pixel,
-}
-
-/// What random cases are drawn from, in words.
-impl std::fmt::Display for Domain {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Uniform(low, high) => write!(f, "{low} to {high}"),
-            Self::LogUniform(low, high) => write!(f, "{low} to {high}, evenly in the logarithm"),
-            Self::Unit => f.write_str("0 to 1"),
-            Self::Direction => f.write_str("a unit vector"),
-            Self::Vector(low, high) => write!(f, "of length {low} to {high}"),
-            Self::Weights => f.write_str("weights that sum to 1"),
-            Self::Whole(low, high) => write!(f, "whole, {low} to {high}"),
-            Self::Halves(low, high) => write!(f, "halves, {low} to {high}"),
-            Self::Transform(low, high) => write!(f, "a transform with scales of {low} to {high}"),
-            Self::Around => f.write_str("a vertex around the pixel"),
-            Self::Pixel => f.write_str("a pixel"),
         }
     }
 }

@@ -14,7 +14,7 @@ pub(super) fn target(target: model::Target) -> Result<Target, SceneError> {
     for (name, pixels) in [("width", target.width), ("height", target.height)] {
         at.field(name).require((1..=MOST_PIXELS).contains(&pixels), pixels, "1 to 8192 pixels")?;
     }
-    Ok(Target { width: target.width, height: target.height, format: target.format.into() })
+    Ok(Target { width: target.width, height: target.height, format: target.format })
 }
 
 /// World → eye.

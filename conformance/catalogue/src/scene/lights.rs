@@ -128,6 +128,6 @@ pub(super) fn fog(fog: &model::Fog) -> Result<Fog, SceneError> {
             FogFactor::Exp2Document { density: of } => FogForm::Exp2Document { density: density("exp2-document", of)? },
             FogFactor::Exp2OpenGl { density: of } => FogForm::Exp2OpenGl { density: density("exp2-opengl", of)? },
         },
-        distance: fog.distance.into(),
+        distance: fog.distance,
     })
 }

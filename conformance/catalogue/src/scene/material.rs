@@ -94,5 +94,5 @@ pub(super) fn surface(at: &At<'_>, material: &Material, textures: &Named<Texture
 fn sampled(at: &At<'_>, reading: &Reading, textures: &Named<TextureImage>) -> Result<Sampled, SceneError> {
     let found = textures.find(&reading.image).map(|(place, _)| place);
     let texture = at.field("image").named(found, &reading.image, &textures.names())?;
-    Ok(Sampled { texture, filter: reading.filter.into(), wrap: reading.wrap.into() })
+    Ok(Sampled { texture, filter: reading.filter, wrap: reading.wrap })
 }

@@ -128,7 +128,7 @@ fn of_part(
         cutout: object.cutout.map(|threshold| at.field("cutout").share(threshold)).transpose()?,
         blend: blended,
         depth: depth(known.scene, object),
-        cull: object.cull.into(),
+        cull: object.cull,
     })
 }
 
@@ -148,11 +148,11 @@ fn shading(scene: &Scene, object: &Object) -> (Option<Shading>, Alpha) {
     };
     let shading = frequency.map(|frequency| Shading {
         frequency,
-        provoking: own.provoking.or(all.provoking).unwrap_or_default().into(),
-        specular: own.specular.or(all.specular).unwrap_or_default().into(),
-        gate: own.gate.or(all.gate).unwrap_or_default().into(),
-        viewer: own.viewer.or(all.viewer).unwrap_or_default().into(),
-        normals: own.normals.or(all.normals).unwrap_or_default().into(),
+        provoking: own.provoking.or(all.provoking).unwrap_or_default(),
+        specular: own.specular.or(all.specular).unwrap_or_default(),
+        gate: own.gate.or(all.gate).unwrap_or_default(),
+        viewer: own.viewer.or(all.viewer).unwrap_or_default(),
+        normals: own.normals.or(all.normals).unwrap_or_default(),
     });
     (shading, own.alpha.or(all.alpha).unwrap_or_default())
 }
@@ -167,7 +167,7 @@ fn depth(scene: &Scene, object: &Object) -> Option<DepthTest> {
     match object.depth {
         None => Some(DepthTest { compare, write: object.blend.is_none() }),
         Some(Depth::None) => None,
-        Some(Depth::Test(test)) => Some(DepthTest { compare: test.compare.into(), write: test.write }),
+        Some(Depth::Test(test)) => Some(DepthTest { compare: test.compare, write: test.write }),
     }
 }
 

@@ -1,34 +1,31 @@
 //! Promises that drivers are known to break.
 
 use super::probe::Probe;
-
-/// A promise that is known to be broken.
-#[derive(Clone, Copy, Debug)]
-pub struct SpecialDeviation {
-    /// Its name in reports.
-    pub name: &'static str,
-    /// Of which interface.
-    pub backend: &'static str,
-    /// Of which probes.
-    pub probes: &'static [&'static str],
-    /// Why.
-    pub reason: &'static str,
-}
+use lightmeter_document::Word;
+use lightmeter_document::special::SpecialDeviation;
+use std::borrow::Cow;
 
 /// Every promise that is known to be broken. Where a record binds, it also says by which value.
-pub const DEVIATIONS: &[SpecialDeviation] = &[SpecialDeviation {
-    name: "gl-unclamped-conversions",
-    backend: "gl",
-    probes: &["negative-to-u32", "too-large-to-u32", "too-large-to-i32", "too-small-to-i32"],
-    reason: "naga 30 clamps a float before it becomes an integer in SPIR-V, not in GLSL, where a value out of range is undefined",
+pub static DEVIATIONS: &[SpecialDeviation] = &[SpecialDeviation {
+    name: Word::Borrowed("gl-unclamped-conversions"),
+    backend: Word::Borrowed("gl"),
+    probes: Cow::Borrowed(&[
+        Word::Borrowed("negative-to-u32"),
+        Word::Borrowed("too-large-to-u32"),
+        Word::Borrowed("too-large-to-i32"),
+        Word::Borrowed("too-small-to-i32"),
+    ]),
+    reason: Word::Borrowed(
+        "naga 30 clamps a float before it becomes an integer in SPIR-V, not in GLSL, where a value out of range is undefined",
+    ),
 }];
 
-impl SpecialDeviation {
-    /// What is known of a probe on an interface.
-    #[must_use]
-    pub fn of(probe: &Probe, backend: &str) -> Option<&'static Self> {
-        DEVIATIONS.iter().find(|deviation| deviation.backend == backend && deviation.probes.contains(&probe.name))
-    }
+/// What is known of a probe on an interface.
+#[must_use]
+pub fn deviation_of(probe: &Probe, backend: &str) -> Option<&'static SpecialDeviation> {
+    let concerns =
+        |known: &&SpecialDeviation| known.backend == backend && known.probes.iter().any(|name| name == probe.name);
+    DEVIATIONS.iter().find(concerns)
 }
 
 #[cfg(test)]
@@ -37,13 +34,10 @@ mod tests {
 
     #[test]
     fn deviations_name_probes_that_are_promised_something() {
-        for name in DEVIATIONS.iter().flat_map(|deviation| deviation.probes) {
+        for name in DEVIATIONS.iter().flat_map(|deviation| deviation.probes.iter()) {
             let probe = Probe::by_name(name).unwrap_or_else(|| panic!("no probe {name}"));
             assert!(probe.promise.is_definite(), "{name}");
-            assert!(
-                SpecialDeviation::of(probe, "gl").is_some() && SpecialDeviation::of(probe, "vulkan").is_none(),
-                "{name}"
-            );
+            assert!(deviation_of(probe, "gl").is_some() && deviation_of(probe, "vulkan").is_none(), "{name}");
         }
     }
 }

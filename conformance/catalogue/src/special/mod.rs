@@ -12,7 +12,7 @@ mod promise;
 mod source;
 mod table;
 
-pub use deviation::{DEVIATIONS, SpecialDeviation};
+pub use deviation::{DEVIATIONS, deviation_of};
 pub use gives::Gives;
 pub use probe::{Class, FAMILY, Probe, Way};
 pub use promise::Promise;

@@ -30,7 +30,7 @@ pub struct GroupSample {
 pub struct SampledRows {
     /// How many cases these are of.
     pub of: u64,
-    /// The cases in their order, in base64. Of each: the place of its formula, its kind (0 a hard case, 1 one near it, 2 one at a boundary, 3 a
+    /// The cases in their order, in base 16. Of each: the place of its formula, its kind (0 a hard case, 1 one near it, 2 one at a boundary, 3 a
     /// random one), one number or for kind 1 two, each as LEB128, and the answer's words, four bytes each, least first.
     pub rows: String,
 }

@@ -6,6 +6,7 @@ use crate::Word;
 use crate::report::{Identity, Interrupted};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// The schema of [`SpecialReport`].
 pub const SCHEMA: &str = "lightmeter.special/1";
@@ -133,13 +134,13 @@ pub struct ProbeSource {
 
 /// A promise that an interface is known to break.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct PromiseDeviation {
+pub struct SpecialDeviation {
     /// The name in reports.
     pub name: Word,
     /// The interface: `vulkan` or `gl`.
     pub backend: Word,
     /// The probes whose promise it breaks.
-    pub probes: Vec<Word>,
+    pub probes: Cow<'static, [Word]>,
     /// Why.
     pub reason: Word,
 }
@@ -166,7 +167,7 @@ pub struct SpecialReport {
     pub sources: Vec<ProbeSource>,
     /// Promises that are known to be broken, on whichever interface.
     #[serde(default)]
-    pub deviations: Vec<PromiseDeviation>,
+    pub deviations: Vec<SpecialDeviation>,
     /// Stages that an adapter lacks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<Skipped>,

@@ -7,13 +7,14 @@ use crate::subject::Subject;
 use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::scene::Loaded;
 use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id, size};
+use lightmeter_document::adapters::Deviation;
 use lightmeter_document::by_case::{CaseCounts, CaseTotals};
 use lightmeter_document::report::{
     BiasUnit, Departure, Diagnosis, Failure, Group, ImageBias, ImageUse, PixelUse, Problem, ProblemKind, Report, Totals,
 };
 use lightmeter_document::{Number, hash};
 use lightmeter_judge::cases::ending;
-use lightmeter_judge::devices::Deviation;
+use lightmeter_judge::devices::grant;
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::bias::Bias;
 use lightmeter_judge::image::expect::{Expectation, expect};
@@ -38,12 +39,12 @@ pub fn excuse(
     judged: &mut Judged,
     image: &StoredImage,
     frame: &Frame,
-    deviation: &Deviation,
+    deviation: &'static Deviation,
     profile: &Profile,
 ) -> u64 {
-    let granted = deviation.grant(*profile);
+    let granted = grant(deviation, *profile);
     let expectation = Expectation::new(frame, None, None, &granted);
-    judged.excuse(deviation.name, |miss| {
+    judged.excuse(&deviation.name, |miss| {
         let (x, y) = (miss.pixel % image.width, miss.pixel / image.width);
         let legal = expectation.pixel(x, y);
         let value = image.pixels[miss.pixel][miss.component];
@@ -206,7 +207,7 @@ impl<'a> JudgedScene<'a> {
                 break;
             }
             let count = excuse(judged, drawn.image, self.frame, deviation, &drawn.profile);
-            report.excuse(deviation.name, &drawn.subject.identity.name, count);
+            report.excuse(&deviation.name, &drawn.subject.identity.name, count);
         }
     }
 

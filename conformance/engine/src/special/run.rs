@@ -2,15 +2,14 @@
 
 use crate::device::{Code, DeviceError, Probed};
 use crate::subject::Subject;
-use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Promise, Source, SpecialDeviation};
+use lightmeter_catalogue::special::{Class, DEVIATIONS, PROBES, Probe, Promise, Source, deviation_of};
 use lightmeter_document::Word;
 use lightmeter_document::event::{Event, Observer, Stop};
 use lightmeter_document::report::Identity;
 use lightmeter_document::special::{
-    self, ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, PromiseDeviation, RecordUse, Skipped,
-    SpecialReport,
+    self, ProbeClass, ProbeResult, ProbeRow, ProbeSource, ProbeVerdict, RecordUse, Skipped, SpecialReport,
 };
-use lightmeter_judge::special::record::{DriverRecord, OnRecord};
+use lightmeter_judge::special::record::{OnRecord, recorded, whose};
 use lightmeter_scene::target::SENTINEL;
 
 /// Why the embedded implementation is skipped.
@@ -34,16 +33,6 @@ pub fn verdict(promise: Promise, bits: u32, recorded: Option<u32>, deviates: boo
         Promise::Indeterminate => ProbeVerdict::Indeterminate,
         _ => ProbeVerdict::Kept,
     }
-}
-
-/// What is to be put on record of an adapter.
-#[must_use]
-pub fn record(report: &SpecialReport, adapter: &Identity) -> DriverRecord {
-    let mut record = DriverRecord::new(adapter);
-    for outcome in report.outcomes.iter().filter(|outcome| outcome.adapter == adapter.name) {
-        record.note(&outcome.probe, &outcome.stage, outcome.bits);
-    }
-    record
 }
 
 /// Evaluates every probe on every device, one after the other until somebody stops it. The embedded implementation has no shading
@@ -99,7 +88,7 @@ pub fn evaluate(subject: &Subject, code: &Code, probes: &[&'static Probe]) -> Re
     let Probed { words, skipped } = device.special(code, probes)?;
     let on_record = OnRecord::of(&subject.identity);
     let record = on_record.map(|on_record| {
-        let (adapter, of) = (subject.identity.name.clone(), on_record.record().whose());
+        let (adapter, of) = (subject.identity.name.clone(), whose(on_record.record()));
         RecordUse { adapter, of, binds: on_record.binds }
     });
     let adapter = &subject.identity.name;
@@ -122,9 +111,9 @@ struct Sink<'a> {
 
 impl Sink<'_> {
     fn put(&mut self, probe: &'static Probe, stage: &'static str, bits: u32) {
-        let recorded = self.on_record.and_then(|of| of.record().get(probe, stage, bits));
+        let recorded = self.on_record.and_then(|of| recorded(of.record(), probe, stage, bits));
         let binding = recorded.filter(|_| self.on_record.is_some_and(|of| of.binds));
-        let deviation = SpecialDeviation::of(probe, &self.adapter.backend);
+        let deviation = deviation_of(probe, &self.adapter.backend);
         self.results.outcomes.push(ProbeResult {
             probe: probe.name.into(),
             adapter: self.adapter.name.clone(),
@@ -149,19 +138,10 @@ fn nothing_yet() -> SpecialReport {
         probes: PROBES.iter().map(row).collect(),
         classes: Class::ALL.map(class).to_vec(),
         sources: Source::ALL.map(source).to_vec(),
-        deviations: DEVIATIONS.iter().map(deviation).collect(),
+        deviations: DEVIATIONS.to_vec(),
         skipped: vec![],
         outcomes: vec![],
         interrupted: None,
-    }
-}
-
-fn deviation(deviation: &SpecialDeviation) -> PromiseDeviation {
-    PromiseDeviation {
-        name: deviation.name.into(),
-        backend: deviation.backend.into(),
-        probes: deviation.probes.iter().map(|&probe| probe.into()).collect(),
-        reason: deviation.reason.into(),
     }
 }
 

@@ -7,9 +7,10 @@ use crate::options::Options;
 use crate::subject::Subject;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_catalogue::select::Shard;
-use lightmeter_catalogue::special::{Class, PROBES, Probe, SpecialDeviation, Way};
+use lightmeter_catalogue::special::{Class, PROBES, Probe, Way, deviation_of};
 use lightmeter_document::event::{Event, Observer};
 use lightmeter_document::report::{DeviationUse, Failure, Group, Report, Totals};
+use lightmeter_document::special::SpecialDeviation;
 use lightmeter_document::special::{ProbeResult, ProbeVerdict, Skipped};
 use lightmeter_document::{Number, Word};
 use lightmeter_judge::simplicity;
@@ -126,7 +127,7 @@ impl Table {
                     ProbeVerdict::Deviates => {
                         totals.expected_failures += 1;
                         let probe = Probe::by_name(&outcome.probe);
-                        let deviation = probe.and_then(|probe| SpecialDeviation::of(probe, &subject.identity.backend));
+                        let deviation = probe.and_then(|probe| deviation_of(probe, &subject.identity.backend));
                         if let Some(deviation) = deviation {
                             granted(deviation, &subject.identity.name, report);
                         }
@@ -149,14 +150,14 @@ impl Table {
 fn granted(deviation: &SpecialDeviation, adapter: &str, report: &mut Report) {
     if !report.deviations.iter().any(|known| known.name == deviation.name && known.adapter == adapter) {
         report.deviations.push(DeviationUse {
-            name: deviation.name.into(),
+            name: deviation.name.clone(),
             adapter: adapter.into(),
-            reason: deviation.reason.into(),
+            reason: deviation.reason.clone(),
             still_needed: true,
             excused: 0,
         });
     }
-    report.excuse(deviation.name, adapter, 1);
+    report.excuse(&deviation.name, adapter, 1);
 }
 
 /// What is known of a result that fails, and how simple its operands are.

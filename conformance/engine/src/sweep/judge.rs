@@ -14,8 +14,9 @@ use lightmeter_arithmetic::format::error_ulp;
 use lightmeter_arithmetic::{Accept, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::AnyFormula;
 use lightmeter_document::Number;
+use lightmeter_document::adapters::Deviation;
 use lightmeter_document::sweep::{ExactFloat, Statistics, SweepInput, SweepPart, SweepVerdict};
-use lightmeter_judge::devices::Deviation;
+use lightmeter_judge::devices::grant;
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_scene::along::{Along, float_of};
 use rayon::prelude::*;
@@ -166,8 +167,8 @@ impl Judge<'_> {
     fn excuse(&self, input: f32, bits: u32, reference: f64) -> Option<&'static str> {
         self.deviations.iter().find_map(|deviation| {
             let mut interval = [Accept::ANY];
-            self.formula.interval_along(&self.along, &[input], &deviation.grant(*self.profile), &mut interval);
-            (judge(bits, reference, &interval[0]).outcome == Outcome::Pass).then_some(deviation.name)
+            self.formula.interval_along(&self.along, &[input], &grant(deviation, *self.profile), &mut interval);
+            (judge(bits, reference, &interval[0]).outcome == Outcome::Pass).then_some(&*deviation.name)
         })
     }
 }

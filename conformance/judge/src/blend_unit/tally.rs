@@ -5,11 +5,12 @@ use super::expect::{ExpectedPixel, expect};
 use super::pixel::{Units, nearest_step};
 use super::rules::{FAULTS, Rules, Store, UnitFault};
 use super::store::{NEAR, StoreCounts, Stores as _};
-use crate::devices::{BlendDeviation, Known};
+use crate::devices::{Known, concerns_result, grants};
 use crate::tally::Tally;
 use crate::{Outcome, Verdict, margin, simplicity};
 use lightmeter_arithmetic::{F16, F32, Format as _, Profile};
 use lightmeter_catalogue::cases::blend::{Program, UnitCase};
+use lightmeter_document::adapters::BlendDeviation;
 use lightmeter_document::report::{Counted, Diagnosis, Explanation, Standing, Tiers};
 use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::Separate;
@@ -52,7 +53,7 @@ impl ExpectedPixel {
 }
 
 fn deviates(known: &Known, target: TargetFormat, reference: f64) -> Option<&'static BlendDeviation> {
-    known.blend_deviations.iter().copied().find(|deviation| deviation.concerns(target, reference))
+    known.blend_deviations.iter().copied().find(|deviation| concerns_result(deviation, target, reference))
 }
 
 /// Beyond the greatest finite number infinity is as near as that number.
@@ -118,11 +119,11 @@ impl UnitTally {
         for (k, value) in pixel.into_iter().enumerate() {
             let verdict = expected.judge(target, k, value);
             let excused = match verdict.outcome {
-                Outcome::Fail => deviates(known, target, expected.reference[k]).filter(|known| known.grants(value)),
+                Outcome::Fail => deviates(known, target, expected.reference[k]).filter(|known| grants(known, value)),
                 _ => None,
             };
             match excused {
-                Some(deviation) => self.verdicts.count(verdict.outcome, Some(deviation.name), false),
+                Some(deviation) => self.verdicts.count(verdict.outcome, Some(&*deviation.name), false),
                 None => self.verdicts.count_many(verdict.outcome, 1, false),
             }
             if verdict.outcome == Outcome::Indeterminate || excused.is_some() {

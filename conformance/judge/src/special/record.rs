@@ -6,8 +6,7 @@
 use crate::devices::version;
 use lightmeter_catalogue::special::Probe;
 use lightmeter_document::report::Identity;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use lightmeter_document::special::record::SpecialRecord;
 use std::sync::LazyLock;
 
 /// The files.
@@ -17,96 +16,55 @@ const FILES: [(&str, &str); 3] = [
     ("swiftshader.json", include_str!("../../records/special/swiftshader.json")),
 ];
 
-const SCHEMA: &str = "lightmeter.special-record/1";
-
-/// A driver's results: bits as `0x…` by stage, by the probe's name. Where the driver leaves a result to the processor's instructions, which
-/// differ between processors of one architecture, all that were seen stand beside each other: `0xffffffff or 0x00000000`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DriverRecord {
-    schema: String,
-    /// The adapter's short name.
-    pub name: String,
-    /// The device as the driver named it.
-    pub device: String,
-    /// `vulkan` or `gl`.
-    pub backend: String,
-    /// The driver and its version.
-    pub driver: String,
-    /// Of the processor: which NaN an invalid operation gives is the processor's choice.
-    pub processor: String,
-    results: BTreeMap<String, BTreeMap<String, String>>,
-}
-
 /// A record as it concerns an adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct OnRecord {
-    record: &'static DriverRecord,
+    record: &'static SpecialRecord,
     /// Whether another result fails.
     pub binds: bool,
 }
 
-static RECORDS: LazyLock<Vec<DriverRecord>> = LazyLock::new(|| {
+static RECORDS: LazyLock<Vec<SpecialRecord>> = LazyLock::new(|| {
     let read = |(name, text): &(&str, &str)| {
         serde_json::from_str(text).unwrap_or_else(|error| panic!("conformance/judge/records/special/{name}: {error}"))
     };
     FILES.iter().map(read).collect()
 });
 
-impl DriverRecord {
-    /// A record without results.
-    #[must_use]
-    pub fn new(identity: &Identity) -> Self {
-        Self {
-            schema: SCHEMA.into(),
-            name: identity.name.clone(),
-            device: identity.device.clone(),
-            backend: identity.backend.to_string(),
-            driver: identity.driver.clone(),
-            processor: std::env::consts::ARCH.into(),
-            results: BTreeMap::new(),
+/// The bits on record of a probe in a stage; of several those that are given, where they are among them.
+#[must_use]
+pub fn recorded(record: &SpecialRecord, probe: &Probe, stage: &str, given: u32) -> Option<u32> {
+    let mut first = None;
+    for bits in all(record, probe, stage) {
+        if bits == given {
+            return Some(bits);
         }
+        first.get_or_insert(bits);
     }
+    first
+}
 
-    /// Notes a result.
-    pub fn note(&mut self, probe: &str, stage: &str, bits: u32) {
-        self.results.entry(probe.into()).or_default().insert(stage.into(), format!("0x{bits:08x}"));
-    }
+/// All bits on record. Where the driver leaves a result to the processor's instructions, which differ between processors of one architecture,
+/// all that were seen stand beside each other: `0xffffffff or 0x00000000`.
+fn all(record: &SpecialRecord, probe: &Probe, stage: &str) -> impl Iterator<Item = u32> {
+    let text = record.results.get(probe.name).and_then(|stages| stages.get(stage)).map_or("", String::as_str);
+    text.split(" or ").filter_map(|one| u32::from_str_radix(one.strip_prefix("0x")?, 16).ok())
+}
 
-    /// The bits on record; of several those that are given, where they are among them.
-    #[must_use]
-    pub fn get(&self, probe: &Probe, stage: &str, given: u32) -> Option<u32> {
-        let mut first = None;
-        for bits in self.all(probe, stage) {
-            if bits == given {
-                return Some(bits);
-            }
-            first.get_or_insert(bits);
-        }
-        first
-    }
+fn binds(record: &SpecialRecord, identity: &Identity, processor: &str) -> bool {
+    version(&identity.driver).is_some()
+        && record.device == identity.device
+        && record.driver == identity.driver
+        && record.processor == processor
+}
 
-    /// All bits on record.
-    fn all(&self, probe: &Probe, stage: &str) -> impl Iterator<Item = u32> {
-        let text = self.results.get(probe.name).and_then(|stages| stages.get(stage)).map_or("", String::as_str);
-        text.split(" or ").filter_map(|one| u32::from_str_radix(one.strip_prefix("0x")?, 16).ok())
-    }
-
-    fn binds(&self, identity: &Identity, processor: &str) -> bool {
-        version(&identity.driver).is_some()
-            && self.device == identity.device
-            && self.driver == identity.driver
-            && self.processor == processor
-    }
-
-    /// For people: `llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)`.
-    #[must_use]
-    pub fn whose(&self) -> String {
-        if self.driver.contains(&self.device) || version(&self.driver).is_some() {
-            self.driver.clone()
-        } else {
-            format!("{} ({})", self.driver, self.device)
-        }
+/// For people: `llvmpipe, Mesa 22.3.6 (LLVM 15.0.6)`.
+#[must_use]
+pub fn whose(record: &SpecialRecord) -> String {
+    if record.driver.contains(&record.device) || version(&record.driver).is_some() {
+        record.driver.clone()
+    } else {
+        format!("{} ({})", record.driver, record.device)
     }
 }
 
@@ -117,9 +75,9 @@ impl OnRecord {
         Self::among(&RECORDS, identity, std::env::consts::ARCH)
     }
 
-    fn among(records: &'static [DriverRecord], identity: &Identity, processor: &str) -> Option<Self> {
+    fn among(records: &'static [SpecialRecord], identity: &Identity, processor: &str) -> Option<Self> {
         let mut same = records.iter().filter(|r| r.backend == identity.backend);
-        let found = same.clone().find(|record| record.binds(identity, processor));
+        let found = same.clone().find(|record| binds(record, identity, processor));
         let binds = found.is_some();
         let record = found.or_else(|| same.find(|record| record.name == identity.name))?;
         Some(Self { record, binds })
@@ -127,7 +85,7 @@ impl OnRecord {
 
     /// The record.
     #[must_use]
-    pub const fn record(&self) -> &'static DriverRecord {
+    pub const fn record(&self) -> &'static SpecialRecord {
         self.record
     }
 }
@@ -135,15 +93,24 @@ impl OnRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightmeter_catalogue::special::{PROBES, SpecialDeviation, Way};
+    use lightmeter_catalogue::special::{PROBES, Way, deviation_of};
+    use lightmeter_document::special::record::SCHEMA;
+    use std::collections::BTreeMap;
 
     fn identity(device: &str, driver: &str) -> Identity {
         Identity { name: "lavapipe".into(), device: device.into(), backend: "vulkan".into(), driver: driver.into() }
     }
 
-    fn one(identity: &Identity) -> &'static [DriverRecord] {
-        let mut record = DriverRecord::new(identity);
-        record.note("nan-plus-one", "compute", 0xffc0_0000);
+    fn record(identity: &Identity) -> SpecialRecord {
+        let Identity { name, device, backend, driver } = identity.clone();
+        let (processor, results) = (std::env::consts::ARCH.into(), BTreeMap::new());
+        SpecialRecord { schema: SCHEMA.into(), name, device, backend, driver, processor, results }
+    }
+
+    fn one(identity: &Identity) -> &'static [SpecialRecord] {
+        let mut record = record(identity);
+        let given = BTreeMap::from([("compute".to_owned(), "0xffc00000".to_owned())]);
+        record.results.insert("nan-plus-one".into(), given);
         Box::leak(Box::new([record]))
     }
 
@@ -174,20 +141,20 @@ mod tests {
         let whose = identity("a", "b");
         let record = &one(&whose)[0];
         let text = serde_json::to_string(record).expect("a record is JSON");
-        let again: DriverRecord = serde_json::from_str(&text).expect("it reads back");
+        let again: SpecialRecord = serde_json::from_str(&text).expect("it reads back");
         assert_eq!(&again, record);
         let probe = Probe::by_name("nan-plus-one").expect("it is in the table");
-        let get = |stage| again.get(probe, stage, 0);
+        let get = |stage| recorded(&again, probe, stage, 0);
         assert_eq!((get("compute"), get("fragment")), (Some(0xffc0_0000), None));
     }
 
     #[test]
     fn of_several_results_on_record_each_is_as_recorded_and_no_other() {
-        let mut record = DriverRecord::new(&identity("a", "b"));
+        let mut record = record(&identity("a", "b"));
         let probe = Probe::by_name("nan-to-u32").expect("it is in the table");
         let both = BTreeMap::from([("compute".to_owned(), "0xffffffff or 0x00000000".to_owned())]);
         record.results.insert(probe.name.into(), both);
-        let get = |given| record.get(probe, "compute", given);
+        let get = |given| recorded(&record, probe, "compute", given);
         assert_eq!([get(u32::MAX), get(0), get(7)], [Some(u32::MAX), Some(0), Some(u32::MAX)]);
     }
 
@@ -201,13 +168,13 @@ mod tests {
                     if let Way::Function(_) = probe.way { &["compute", "fragment"] } else { &["raster"] };
                 for stage in stages {
                     assert!(
-                        record.all(probe, stage).next().is_some(),
+                        all(record, probe, stage).next().is_some(),
                         "{} has no {}, {stage}",
                         record.name,
                         probe.name
                     );
-                    let is_known = SpecialDeviation::of(probe, &record.backend).is_some();
-                    for bits in record.all(probe, stage) {
+                    let is_known = deviation_of(probe, &record.backend).is_some();
+                    for bits in all(record, probe, stage) {
                         let (name, of) = (probe.name, &record.name);
                         assert!(is_known || probe.promise.allows(bits), "{name} on {of}, {stage}: 0x{bits:08x}");
                     }

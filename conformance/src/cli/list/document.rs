@@ -4,11 +4,11 @@ use super::{condition, pixels};
 use lightmeter::cases::blend::aliases;
 use lightmeter::cases::{self, Naive};
 use lightmeter::document::list::{
-    CASES, CasesDocument, DeviationCase, FORMULAS, FormulaCases, FormulasDocument, HardCase, ListedCases, ListedDomain,
-    ListedFormula, ListedInput, ListedOutput, ListedProbe, NaiveForm, SceneCases, StableClaim, TableCases,
+    CASES, CasesDocument, DeviationCase, FORMULAS, FormulaCases, FormulasDocument, HardCase, ListedCases,
+    ListedFormula, ListedProbe, ListedValue, NaiveForm, SceneCases, StableClaim, TableCases,
 };
 use lightmeter::document::{Number, Word};
-use lightmeter::gate::pack::made_by;
+use lightmeter::gate::pack::described;
 use lightmeter::scene::library::SCENES;
 use lightmeter::scene::load;
 use lightmeter::scene::select::{Chosen, scene_id};
@@ -69,46 +69,16 @@ fn formula(member: &Member, aliases: &Aliases) -> ListedFormula {
         size: claim.size.name().into(),
         because: claim.because.into(),
     };
-    let input = |input: &cases::Input| ListedInput {
-        name: input.name.into(),
-        shape: input.shape.name().into(),
-        unit: input.unit.into(),
-        means: spec.input_means(input).into(),
-        domain: domain(input.domain),
-    };
-    let output = |output: &cases::Output| ListedOutput {
-        name: output.name.into(),
-        shape: output.shape.name().into(),
-        unit: output.unit.into(),
-        means: spec.output_means(output).into(),
-    };
+    let described = described(spec);
+    let with_domain =
+        |(value, input): (ListedValue, &cases::Input)| ListedValue { domain: Some(input.domain), ..value };
     ListedFormula {
-        id: spec.id.clone(),
-        formula: spec.text.into(),
-        rules: spec.rules().into_iter().map(Word::from).collect(),
-        source: spec.source.into(),
-        made_by: made_by(spec),
+        source: Some(spec.source.into()),
         stages: spec.stages().iter().map(|stage| Word::from(stage.name())).collect(),
         stable: spec.stable.map(stable),
-        inputs: spec.inputs.iter().map(input).collect(),
-        outputs: spec.outputs.iter().map(output).collect(),
+        inputs: described.inputs.into_iter().zip(spec.inputs).map(with_domain).collect(),
         aliases: aliases.of(&spec.id),
-    }
-}
-
-fn domain(domain: cases::Domain) -> ListedDomain {
-    match domain {
-        cases::Domain::Uniform(low, high) => ListedDomain::Uniform(low.into(), high.into()),
-        cases::Domain::LogUniform(low, high) => ListedDomain::LogUniform(low.into(), high.into()),
-        cases::Domain::Unit => ListedDomain::Unit,
-        cases::Domain::Direction => ListedDomain::Direction,
-        cases::Domain::Vector(low, high) => ListedDomain::Vector(low.into(), high.into()),
-        cases::Domain::Weights => ListedDomain::Weights,
-        cases::Domain::Whole(low, high) => ListedDomain::Whole(low, high),
-        cases::Domain::Halves(low, high) => ListedDomain::Halves(low.into(), high.into()),
-        cases::Domain::Transform(low, high) => ListedDomain::Transform(low.into(), high.into()),
-        cases::Domain::Around => ListedDomain::Around,
-        cases::Domain::Pixel => ListedDomain::Pixel,
+        ..described
     }
 }
 

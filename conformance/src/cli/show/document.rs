@@ -5,14 +5,11 @@ use super::{Answer, Known, outcome};
 use lightmeter::arithmetic::Accept;
 use lightmeter::cases::Input;
 use lightmeter::document::report::Examined;
-use lightmeter::document::show::{
-    SCHEMA, ShownAnswer, ShownCase, ShownConditioning, ShownMeaning, ShownOutput, ShownStanding, ShownValue,
-};
+use lightmeter::document::show::{SCHEMA, ShownAnswer, ShownCase, ShownMeaning, ShownOutput, ShownValue};
 use lightmeter::document::{Number, Word};
 use lightmeter::faults::shown_step;
 use lightmeter::formula::by_name;
 use lightmeter::select::{CaseRef, Member};
-use lightmeter::stability::{Conditioning, FormStanding};
 
 pub(super) fn case(
     member: &Member,
@@ -45,7 +42,7 @@ pub(super) fn case(
         inputs_hex: by_name(member, &known.inputs, |x| format!("0x{:08x}", x.to_bits()).into()),
         steps: known.steps.iter().map(shown_step).collect(),
         outputs: (0..known.outputs.len()).map(output).collect(),
-        conditioning: conditioning(&known.conditioning),
+        conditioning: known.conditioning,
         answers: rows.chain(unit.iter().map(unit_answer)).collect(),
         forms,
         mistake: None,
@@ -54,17 +51,6 @@ pub(super) fn case(
 
 fn bounds(interval: &Accept) -> [Number; 2] {
     [Number(interval.low()), Number(interval.high())]
-}
-
-fn conditioning(conditioning: &Conditioning) -> ShownConditioning {
-    let standing = match conditioning.standing {
-        FormStanding::Stable => ShownStanding::Stable,
-        FormStanding::IllConditioned => ShownStanding::IllConditioned,
-        FormStanding::Unstable => ShownStanding::Unstable,
-        FormStanding::NothingPromised => ShownStanding::NothingPromised,
-        FormStanding::Singular => ShownStanding::Singular,
-    };
-    ShownConditioning { condition: conditioning.condition, reach: conditioning.reach, standing }
 }
 
 fn answer(member: &Member, known: &Known, answer: &Answer) -> ShownAnswer {

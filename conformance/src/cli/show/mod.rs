@@ -16,6 +16,7 @@ use lightmeter::arithmetic::{Accept, Profile, Trace, trace};
 use lightmeter::cases::blend::{Samples, separate_of, written_state};
 use lightmeter::cases::{Kind, boundary_name};
 use lightmeter::document::report::Examined;
+use lightmeter::document::show::{Conditioning, FormStanding};
 use lightmeter::document::show::{ShowDocument, ShownCase, ShownMistake};
 use lightmeter::document::{Document as _, Number, error_told};
 use lightmeter::evaluate::Evaluator;
@@ -28,7 +29,6 @@ use lightmeter::report::Level;
 use lightmeter::report::table::{Align, TextTable};
 use lightmeter::select::{CaseRef, Member, Shard, canonical_id, catalogue_of};
 use lightmeter::stability;
-use lightmeter::stability::{Conditioning, FormStanding};
 use lightmeter::subject::Subject;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -110,7 +110,7 @@ impl Show {
             CaseRef::Hard(place) => (0..member.near()).map(|k| self.row(member, CaseRef::Near(place, k))).collect(),
             CaseRef::Near(..) | CaseRef::Boundary(_) | CaseRef::Random(_) => vec![],
         };
-        let conditioning = Conditioning::of(member, &inputs, &legal, &near);
+        let conditioning = stability::conditioning(member, &inputs, &legal, &near);
         let known = Known { inputs, outputs, steps, condition, conditioning };
         let (answers, unit) = self.answers(member, &known.inputs)?;
         let forms = self.forms(member, case)?;
@@ -323,7 +323,7 @@ fn as_text(member: &Member, case: CaseRef, known: &Known, answers: &[Answer]) ->
     for output in spec.outputs {
         writeln!(text, "  {}: {}", output.name, spec.output_means(output))?;
     }
-    writeln!(text, "\nconditioning\n  {}", known.conditioning.text())?;
+    writeln!(text, "\nconditioning\n  {}", stability::text(&known.conditioning))?;
     let is_promised_less =
         matches!(known.conditioning.standing, FormStanding::Unstable | FormStanding::NothingPromised);
     if let Some(stable) = spec.stable.filter(|_| is_promised_less) {

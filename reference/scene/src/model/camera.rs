@@ -1,6 +1,6 @@
 //! The camera and the image.
 
-use super::Format;
+use crate::target::TargetFormat;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,12 +13,12 @@ pub struct Target {
     /// Pixels, 1 to 8192.
     pub height: u32,
     /// How a pixel is stored.
-    pub format: Format,
+    pub format: TargetFormat,
 }
 
 impl Default for Target {
     fn default() -> Self {
-        Self { width: 512, height: 512, format: Format::default() }
+        Self { width: 512, height: 512, format: TargetFormat::default() }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Lights and fog.
 
-use super::{AmbientForm, FogDistance, LightKind};
+use super::LightKind;
+use crate::shading::{Ambient, Distance};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +12,7 @@ pub struct AmbientLight {
     /// Its colour.
     pub color: [f64; 3],
     /// What it does to a material.
-    pub form: AmbientForm,
+    pub form: Ambient,
 }
 
 /// A light. Which fields it needs follows from its kind: `travel` or `toward` for a directional light, `position` for
@@ -83,7 +84,7 @@ pub struct Fog {
     pub factor: FogFactor,
     /// Which distance it is of.
     #[serde(default)]
-    pub distance: FogDistance,
+    pub distance: Distance,
 }
 
 /// The factor of a fog.

@@ -13,16 +13,14 @@ mod shape;
 mod surface;
 
 pub use camera::{Camera, Projection, Target};
-pub use choice::{
-    Alpha, AmbientForm, Compare, Cull, FogDistance, Format, Frequency, Gate, Highlight, LightAmbient, LightKind,
-    NormalForm, NormalsFrom, Order, ReadFilter, ReadWrap, Specular, TakenFrom, TextureMode, Viewer,
-};
+pub use choice::{Alpha, Frequency, Highlight, LightKind, NormalsFrom, Order, TextureMode};
 pub use light::{AmbientLight, Fog, FogFactor, Light};
 pub use named::Named;
 pub use object::{Blend, Depth, DepthTest, Object, Shading, TransformStep};
 pub use shape::{Mesh, Shape};
 pub use surface::{Material, Reading, TextureImage};
 
+use crate::shading::LightAmbient;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,10 @@
 //! What is drawn, and how.
 
-use super::{Alpha, Compare, Cull, Frequency, Gate, NormalForm, Specular, TakenFrom, Viewer};
+use super::{Alpha, Frequency};
+use crate::depth::Compare;
+use crate::frame::Cull;
+use crate::raster::Provoking;
+use crate::shading::{Normals, Specular, SpecularGate, Viewer};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -69,15 +73,15 @@ pub struct Shading {
     /// Where it is lit; `phong` if left out.
     pub frequency: Option<Frequency>,
     /// The vertex that gives a face its colour; `last` if left out.
-    pub provoking: Option<TakenFrom>,
+    pub provoking: Option<Provoking>,
     /// The highlight; `phong` if left out.
     pub specular: Option<Specular>,
     /// Whether a surface that faces away from a light can have its highlight; `documents`, it can, if left out.
-    pub gate: Option<Gate>,
+    pub gate: Option<SpecularGate>,
     /// The viewer of highlights; `local` if left out.
     pub viewer: Option<Viewer>,
     /// How normals are brought to eye space; `inverse-transpose` if left out.
-    pub normals: Option<NormalForm>,
+    pub normals: Option<Normals>,
     /// The alpha of the colour; the material's if left out.
     pub alpha: Option<Alpha>,
 }

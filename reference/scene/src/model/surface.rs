@@ -1,6 +1,7 @@
 //! Images and materials.
 
-use super::{Highlight, ReadFilter, ReadWrap, TextureMode};
+use super::{Highlight, TextureMode};
+use crate::frame::{TextureFilter, Wrap};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -45,10 +46,10 @@ pub struct Reading {
     pub image: String,
     /// Between texels.
     #[serde(default)]
-    pub filter: ReadFilter,
+    pub filter: TextureFilter,
     /// Beyond its edges.
     #[serde(default)]
-    pub wrap: ReadWrap,
+    pub wrap: Wrap,
     /// What it does to the colour; a lightmap always multiplies.
     #[serde(default)]
     pub mode: TextureMode,
