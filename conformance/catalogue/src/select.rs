@@ -38,6 +38,8 @@ pub struct Member {
     pub formula: Box<dyn AnyFormula>,
     /// Its description.
     pub spec: Spec,
+    /// A number for its id, which another formula hardly ever has.
+    pub number: u64,
     /// Numbers of a row that are not drawn, by their places: what whoever is judged has as a constant, or in common with another input.
     pub held: Vec<(usize, Held)>,
     /// Numbers of its outputs that whoever is judged does not give, by their places.
@@ -48,7 +50,9 @@ impl Member {
     /// A formula with its description.
     #[must_use]
     pub fn new(formula: Box<dyn AnyFormula>) -> Self {
-        Self { spec: formula.spec(), formula, held: vec![], missing: vec![] }
+        let spec = formula.spec();
+        let number = spec.id.bytes().fold(0, |number, byte| cases::mix(number ^ u64::from(byte)));
+        Self { spec, number, formula, held: vec![], missing: vec![] }
     }
 
     /// Whether it is one of the many blend states, whose cases stand right below it.

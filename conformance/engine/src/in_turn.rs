@@ -189,7 +189,6 @@ impl<'a, 'r> InTurn<'a, 'r> {
         let scouted = std::mem::take(&mut self.scouted).into_iter().map(|(place, scouted)| (place, scouted.run));
         for (place, run) in begun.chain(scouted) {
             let (groups, failures) = few(&run, self.subjects, self.options, self.report);
-            run.note(self.subjects, self.report);
             outcome.judged.push((place, groups, failures));
         }
         outcome
@@ -352,20 +351,31 @@ impl<'a, 'r> InTurn<'a, 'r> {
             match drawn {
                 Ok(pixels) if !is_stopped() => group.pixels = Some(pixels),
                 other => {
-                    self.groups.pop_front();
+                    self.cut_short();
                     return other.map(|pixels| Some(Noted::Pixels(pixels)));
                 }
             }
         }
-        if !is_stopped() {
-            if let Err(error) = self.chunk(begun, rows, is_asked) {
-                return Err(self.broken(error));
-            }
-            if !rows.is_last {
-                return Ok(None);
-            }
+        if is_stopped() {
+            let pixels = self.cut_short();
+            return Ok(Some(Noted::Pixels(pixels.unwrap_or_default())));
+        }
+        if let Err(error) = self.chunk(begun, rows, is_asked) {
+            return Err(self.broken(error));
+        }
+        if !rows.is_last {
+            return Ok(None);
         }
         self.finish(chosen, rows.group.members(), is_asked).map(Some)
+    }
+
+    /// Reports what was judged of the group under way, whose other cases nobody judges any more; what a blend unit left of it.
+    fn cut_short(&mut self) -> Option<NotedPixels> {
+        let group = self.groups.pop_front()?;
+        let (groups, failures) = few(&group.run, self.subjects, self.options, self.report);
+        self.report.groups.extend(groups);
+        self.report.failures.extend(failures);
+        group.pixels
     }
 
     /// Reports what was judged of a group, if any of it had begun, before it came to an error.

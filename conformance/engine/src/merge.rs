@@ -217,8 +217,9 @@ impl Order {
         let (path, number) = number.unwrap_or_else(|| (id.to_owned(), 0));
         let of_hard = |hard: &str| self.of_hard.get(hard).copied().unwrap_or(usize::MAX);
         let formula = |kind: &str| self.of(path.strip_suffix(kind).unwrap_or(&path));
-        match id.split_once("/near/") {
-            Some((hard, _)) => (of_hard(hard), 1, self.of(hard), path, number),
+        // A hard case may have any name, that of those near it, too.
+        match path.strip_suffix("/near").filter(|hard| self.of_hard.contains_key(*hard)) {
+            Some(hard) => (of_hard(hard), 1, self.of(hard), path.clone(), number),
             None if id.contains("/hard/") => (of_hard(id), 0, self.of(id), path, number),
             None if id.contains("/boundary/") => (formula("/boundary"), 2, 0, path, number),
             None => (formula("/random"), 3, 0, path, number),

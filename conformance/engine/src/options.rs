@@ -119,7 +119,7 @@ impl Adapted {
             given.iter().enumerate().filter(|(_, given)| !**given).map(|(place, _)| place).collect();
         let formula =
             if missing.is_empty() { member.formula } else { Box::new(Partial { formula: member.formula, given }) };
-        Member { held, formula, missing, spec: member.spec }
+        Member { held, formula, missing, number: member.number, spec: member.spec }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::supply::RowGroup;
 use crate::under_way::{is_over, tell};
 use lightmeter_catalogue::cases::Kind;
 use lightmeter_document::event::{Event, Observer, Silent};
-use lightmeter_document::report::{Failure, Group, Report};
+use lightmeter_document::report::{Failure, Group, Report, Timing};
 use lightmeter_judge::chunk::Chunk;
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Instant;
@@ -95,28 +95,43 @@ fn end<'a>(
     observer: &mut dyn Observer,
 ) -> Result<Scouted<'a>, DeviceError> {
     observer.see(&Event::Group(run.id()));
-    let chunk = run.end(begun, subjects, options, report, &mut Silent)?;
+    let chunk = match run.end(begun, subjects, options, report, &mut Silent) {
+        Ok(chunk) => chunk,
+        Err(error) => {
+            // What the subjects before the one that failed gave is judged.
+            let (groups, failures) = few(&run, subjects, options, report);
+            report.groups.extend(groups);
+            report.failures.extend(failures);
+            return Err(error);
+        }
+    };
     observer.see(&Event::Advanced(chunk.cases.len() as u64));
     if run.fails() {
-        let (groups, mut failures) = few(&run, subjects, options, report);
-        failures.iter_mut().for_each(|failure| failure.rerun = options.again(failure, false));
+        let (groups, failures) = told(&run, subjects, options, &mut report.timing);
         tell(&groups, &failures, true, observer);
     }
     Ok(Scouted { run, chunk })
 }
 
-/// What the scouts of a group have come to. With this few cases only a single wrong value tells anything.
+/// What some of a group's cases have come to, where nobody judges the others: it is reported, and what is excused is noted.
 pub(crate) fn few(
     run: &RowRun<'_>,
     subjects: &[Subject],
     options: &Options,
     report: &mut Report,
 ) -> (Vec<Group>, Vec<Failure>) {
-    let (mut groups, failures) = run.groups(subjects, options, &mut report.timing);
+    run.note(subjects, report);
+    told(run, subjects, options, &mut report.timing)
+}
+
+/// What some of a group's cases have come to. With this few only a single wrong value tells anything.
+fn told(run: &RowRun<'_>, subjects: &[Subject], options: &Options, timing: &mut Timing) -> (Vec<Group>, Vec<Failure>) {
+    let (mut groups, mut failures) = run.groups(subjects, options, timing);
     groups.retain(|group| group.totals.cases > 0);
     for group in &mut groups {
         group.problems.clear();
         group.totals.failed_groups = 0;
     }
+    failures.iter_mut().for_each(|failure| failure.rerun = options.again(failure, false));
     (groups, failures)
 }

@@ -4,7 +4,7 @@ use crate::cases::{Answers, CaseTally, ExpectedFailure, Unanswered};
 use crate::chunk::{Chunk, TASK};
 use crate::devices::{Known, grant};
 use crate::kept::KeptRow;
-use crate::sample::Sample;
+use crate::sample::{Sample, row_number};
 use crate::tally::{KEPT, Tally};
 use crate::{Outcome, judge, telling, worse};
 use lightmeter_arithmetic::{Accept, Profile};
@@ -253,11 +253,12 @@ fn judge_values(
             errors = (errors.0 + verdict.error, errors.1 + 1);
         }
     }
+    let number = row_number(member.number, chunk.cases[case]);
     if standing.tally.totals.failed > failed {
         *standing.failing.entry(chunk.of[case]).or_default() += 1;
-        standing.wrong.push((chunk.of[case], chunk.cases[case]), kept);
+        standing.wrong.push((chunk.of[case], chunk.cases[case]), number, kept);
     } else if standing.tally.totals.expected_failures == pardoned {
-        standing.right.push((chunk.of[case], chunk.cases[case]), kept);
+        standing.right.push((chunk.of[case], chunk.cases[case]), number, kept);
     }
     (greatest, errors)
 }

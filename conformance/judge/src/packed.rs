@@ -1,6 +1,6 @@
 //! Samples of rows as text, which a shard's report carries.
 
-use crate::sample::Sample;
+use crate::sample::{Sample, row_number};
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::report::SampledRows;
 
@@ -31,11 +31,17 @@ pub fn packed<V>(sample: &Sample<(usize, CaseRef), V>, values: impl Fn(&V) -> Ve
     SampledRows { of: sample.seen, rows: bytes.iter().map(|byte| format!("{byte:02x}")).collect() }
 }
 
-/// Reads a sample of at most `most` rows of the whole, where `places` has the place of each of its formulas, and `members` are the whole's.
+/// Reads a sample of at most `most` rows of the whole, where `places` has the place of each of its formulas, and `members` are the whole's, each
+/// with the number that its rows are numbered by.
 ///
 /// # Errors
 /// Where it is damaged, or names a case that its formula does not have.
-pub fn unpacked(rows: &SampledRows, places: &[usize], members: &[&Member], most: usize) -> Result<ReadRows, BadSample> {
+pub fn unpacked(
+    rows: &SampledRows,
+    places: &[usize],
+    members: &[(&Member, u64)],
+    most: usize,
+) -> Result<ReadRows, BadSample> {
     let mut sample = Sample::new(most);
     let (pairs, rest) = rows.rows.as_bytes().as_chunks::<2>();
     let digit = |&byte: &u8| char::from(byte).to_digit(16);
@@ -44,7 +50,7 @@ pub fn unpacked(rows: &SampledRows, places: &[usize], members: &[&Member], most:
     let bytes = bytes.filter(|_| rest.is_empty()).ok_or(BadSample("it is not written in base 16"))?;
     let mut rest = bytes.as_slice();
     let (mut last, mut count) = (None, 0_u64);
-    let outputs = members.first().map_or(1, |member| member.spec.output_len()).max(1);
+    let outputs = members.first().map_or(1, |(member, _)| member.spec.output_len()).max(1);
     while !rest.is_empty() {
         let member = usize::try_from(read(&mut rest)?).ok().and_then(|place| places.get(place).copied());
         let member = member.ok_or(BadSample("a row is of a formula that the group does not have"))?;
@@ -58,7 +64,8 @@ pub fn unpacked(rows: &SampledRows, places: &[usize], members: &[&Member], most:
             3 => CaseRef::Random(read(&mut rest)?),
             _ => return Err(BadSample("a row is of no kind that there is")),
         };
-        let of = members.get(member).ok_or(BadSample("a row is of a formula that the group does not have"))?;
+        let &(of, number) =
+            members.get(member).ok_or(BadSample("a row is of a formula that the group does not have"))?;
         if !of.has(case) {
             return Err(BadSample("a row is of a case that its formula does not have"));
         }
@@ -70,10 +77,10 @@ pub fn unpacked(rows: &SampledRows, places: &[usize], members: &[&Member], most:
         }
         count += 1;
         let words = words.as_chunks::<4>().0.iter().map(|&word| f32::from_bits(u32::from_le_bytes(word)));
-        sample.push((member, case), || words.collect());
+        sample.push((member, case), row_number(number, case), || words.collect());
     }
-    if count > rows.of {
-        return Err(BadSample("it has more rows than it says that there are"));
+    if count != rows.of.min(most as u64) {
+        return Err(BadSample("it has other rows than it says that there are"));
     }
     sample.seen = rows.of;
     Ok(sample)
@@ -126,10 +133,10 @@ mod tests {
                     _ => CaseRef::Random(k),
                 };
                 if seen.insert(case) {
-                    sample.push((0, case), || vec![value; outputs]);
+                    sample.push((0, case), row_number(member.number, case), || vec![value; outputs]);
                 }
             }
-            let again = unpacked(&packed(&sample, Vec::clone), &[0], &[member], 16);
+            let again = unpacked(&packed(&sample, Vec::clone), &[0], &[(member, member.number)], 16);
             let bits = |values: &Vec<f32>| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
             prop_assert!(again.is_ok_and(|again| again.is_like(&sample, |a, b| bits(a) == bits(b))));
         }
@@ -138,7 +145,7 @@ mod tests {
         fn any_text_is_read_or_refused(rows in "[0-9a-fg]{0,128}") {
             let catalogue = catalogue();
             let member = &catalogue[0];
-            let _ = unpacked(&SampledRows { of: 1, rows }, &[0], &[member], 8);
+            let _ = unpacked(&SampledRows { of: 1, rows }, &[0], &[(member, member.number)], 8);
         }
     }
 }

@@ -5,30 +5,17 @@ use lightmeter_catalogue::cases::mix;
 use lightmeter_catalogue::select::CaseRef;
 use rayon::prelude::*;
 
-/// What tells a row from all others.
-pub trait RowNumber: Copy + Ord {
-    /// A number for it, which another row hardly ever has.
-    fn number(self) -> u64;
-}
-
-impl RowNumber for usize {
-    fn number(self) -> u64 {
-        self as u64
-    }
-}
-
-/// The formula's place among its group's, and the case.
-impl RowNumber for (usize, CaseRef) {
-    fn number(self) -> u64 {
-        let (member, case) = self;
-        let [kind, first, second] = match case {
-            CaseRef::Hard(place) => [1, place as u64, 0],
-            CaseRef::Near(place, k) => [2, place as u64, k],
-            CaseRef::Random(k) => [3, k, 0],
-            CaseRef::Boundary(k) => [4, k, 0],
-        };
-        [member as u64, kind, first, second].into_iter().fold(0, |number, part| mix(number ^ part))
-    }
+/// A number for a case of a formula, which has one itself. It does not depend on which other formulas are judged, so that shards keep the same
+/// cases.
+#[must_use]
+pub fn row_number(formula: u64, case: CaseRef) -> u64 {
+    let [kind, first, second] = match case {
+        CaseRef::Hard(place) => [1, place as u64, 0],
+        CaseRef::Near(place, k) => [2, place as u64, k],
+        CaseRef::Random(k) => [3, k, 0],
+        CaseRef::Boundary(k) => [4, k, 0],
+    };
+    [kind, first, second].into_iter().fold(mix(formula), |number, part| mix(number ^ part))
 }
 
 /// Rows with what is kept of each. It keeps those whose places have the least hashes, which no order of arrival changes.
@@ -43,7 +30,7 @@ pub struct Sample<P, V> {
     bound: u64,
 }
 
-impl<P: RowNumber, V> Sample<P, V> {
+impl<P: Copy + Ord, V> Sample<P, V> {
     /// An empty sample, which keeps at most `most` rows.
     #[must_use]
     pub const fn new(most: usize) -> Self {
@@ -56,10 +43,10 @@ impl<P: RowNumber, V> Sample<P, V> {
         Self { rows: vec![], most: self.most, seen: 0, bound: self.bound }
     }
 
-    /// Takes a row.
-    pub fn push(&mut self, place: P, kept: impl FnOnce() -> V) {
+    /// Takes a row, which has a number that another one hardly ever has.
+    pub fn push(&mut self, place: P, number: u64, kept: impl FnOnce() -> V) {
         self.seen += 1;
-        let hash = mix(place.number());
+        let hash = mix(number);
         if hash <= self.bound {
             self.rows.push((hash, place, kept()));
             self.thin(2 * self.most);
@@ -123,7 +110,7 @@ mod tests {
 
     fn sample(places: &[usize]) -> Sample<usize, usize> {
         let mut sample = Sample::new(8);
-        places.iter().for_each(|&place| sample.push(place, || 3 * place));
+        places.iter().for_each(|&place| sample.push(place, place as u64, || 3 * place));
         sample
     }
 
@@ -141,7 +128,7 @@ mod tests {
             let (first, last) = mixed.split_at(cut.min(count));
             let mut sum = sample(last);
             let mut part = sum.part();
-            first.iter().for_each(|&place| part.push(place, || 3 * place));
+            first.iter().for_each(|&place| part.push(place, place as u64, || 3 * place));
             sum.add(part);
             prop_assert_eq!(sum.rows(), whole.rows());
             prop_assert_eq!(sum.seen, whole.seen);
@@ -152,7 +139,7 @@ mod tests {
     fn a_sample_is_spread_over_all_that_came() {
         let all: Vec<usize> = (0..60_000).collect();
         let mut sample = Sample::new(1024);
-        all.iter().for_each(|&place| sample.push(place, || ()));
+        all.iter().for_each(|&place| sample.push(place, place as u64, || ()));
         let mut of_tenth = [0; 10];
         sample.rows().iter().for_each(|(place, _)| of_tenth[place / 6000] += 1);
         // Of 102 in the mean, with a standard deviation of less than 10.
@@ -163,7 +150,7 @@ mod tests {
     fn places_of_a_group_have_numbers_of_their_own() {
         let cases = |k: u64| [CaseRef::Hard(usize::try_from(k).unwrap_or(0)), CaseRef::Near(3, k), CaseRef::Random(k)];
         let all: Vec<u64> =
-            (0..8).flat_map(|of| (0..100).flat_map(cases).map(move |case| (of, case).number())).collect();
+            (0..8).flat_map(|of| (0..100).flat_map(cases).map(move |case| row_number(of, case))).collect();
         let each: std::collections::HashSet<u64> = all.iter().copied().collect();
         assert_eq!(each.len(), all.len());
     }

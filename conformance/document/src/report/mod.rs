@@ -313,7 +313,9 @@ impl Report {
     /// Expected failures none of whose cases failed. In a shard, whose cases are a part of theirs, nobody can tell.
     pub fn passing_unexpectedly(&self) -> impl Iterator<Item = &KnownFailure> {
         let is_shard = self.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
-        self.expectations.iter().filter(move |expected| !is_shard && expected.passes_unexpectedly())
+        // What was judged of an interrupted run are the first cases alone.
+        let is_whole = !is_shard && self.interrupted.is_none();
+        self.expectations.iter().filter(move |expected| is_whole && expected.passes_unexpectedly())
     }
 
     /// Counts verdicts that a named deviation of an adapter excused.

@@ -25,7 +25,7 @@ use lightmeter_judge::blend_unit::tally::{DrawnState, FailingPixel, UnitTally, d
 use lightmeter_judge::cases::{CaseTally, Unanswered};
 use lightmeter_judge::formula::{bits_in_hex, by_name, units, unjudged};
 use lightmeter_judge::packed::{BadSample, ReadRows, packed, unpacked};
-use lightmeter_judge::sample::Sample;
+use lightmeter_judge::sample::{Sample, row_number};
 use lightmeter_judge::tally::{KEPT_FAILURES, Tally};
 use lightmeter_judge::{Outcome, worse};
 use lightmeter_scene::blend::Route;
@@ -347,7 +347,7 @@ impl UnitStanding {
         let drawn = DrawnState { program, route, target: self.target, profile: options.profile };
         for &(place, _) in &tally.failing {
             let kept = || FailingPixel { drawn, case: piece.case(place), pixel: pixels[place] };
-            self.samples.push((way, cases[place]), kept);
+            self.samples.push((way, cases[place]), row_number(number_of(member, piece.route), cases[place]), kept);
         }
         let inputs = |place: usize| piece.inputs[place * piece.stride..(place + 1) * piece.stride].to_vec();
         let number = self.pieces;
@@ -426,6 +426,11 @@ fn way_of(member: usize, route: Route) -> usize {
     member * Route::ALL.len() + route
 }
 
+/// A number for a formula with a route.
+fn number_of(member: &Member, route: Route) -> u64 {
+    member.number ^ way_of(0, route) as u64
+}
+
 /// What a shard keeps of a group that a blend unit drew.
 fn sampled(standing: &UnitStanding, members: &[&Member]) -> GroupSample {
     GroupSample {
@@ -452,7 +457,9 @@ pub(crate) fn unpacked_pixels(sample: &GroupSample, members: &[&Member]) -> Resu
             (0..Route::ALL.len()).map(move |route| of.saturating_mul(Route::ALL.len()).saturating_add(route))
         })
         .collect();
-    let each: Vec<&Member> = members.iter().flat_map(|member| std::iter::repeat_n(*member, Route::ALL.len())).collect();
+    let by_routes = |member: &&'_ Member| Route::ALL.map(|route| number_of(member, route));
+    let each: Vec<(&Member, u64)> =
+        members.iter().flat_map(|member| by_routes(member).map(|number| (*member, number))).collect();
     unpacked(&sample.wrong, &places, &each, SAMPLES)
 }
 

@@ -7,8 +7,8 @@ use crate::diagnosed::GroupRows;
 use crate::options::{Adapted, Constant};
 use crate::stability;
 use lightmeter_arithmetic::Profile;
-use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::cases::blend::{Samples, separate_of};
+use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member, alias_members, catalogue_of};
 use lightmeter_document::report::{
     Diagnosis, Group, GroupSample, JudgedAs, Problem, ProblemKind, Report, SampledStores, Sentence,
@@ -117,16 +117,19 @@ impl Context<'_> {
         if members.len() != named.len() {
             return Err(BadSample("it names a formula that is none of the group's"));
         }
-        let (Some(first), Some(stage)) =
-            (members.first(), Stage::ALL.into_iter().find(|stage| group.stage == stage.name()))
-        else {
-            return Ok(());
+        let Some(first) = members.first() else { return Ok(()) };
+        let Some(stage) = Stage::ALL.into_iter().find(|stage| group.stage == stage.name()) else {
+            return Err(BadSample("its stage is none that there is"));
         };
+        agrees(group, samples)?;
         let random =
             samples.iter().fold((0, 0), |(all, open), sample| (all + sample.random[0], open + sample.random[1]));
         let undecided = problem(random, group.totals.verdicts, group.totals.indeterminate);
         let known = known_of(group, whole);
         if let Some(target) = group.blended_on().and_then(|name| TargetFormat::by_name(name)) {
+            if !matches!(first.spec.kind, Kind::Blend(_)) {
+                return Err(BadSample("it was not blended, though it has a target"));
+            }
             let pixels = read(samples, |sample| unpacked_pixels(sample, &members))?;
             let stores = stores(samples);
             let special = whole.special.iter().filter(|special| {
@@ -143,9 +146,16 @@ impl Context<'_> {
         }
         let failing = Self::failing(samples, &members)?;
         let places = |sample: &GroupSample| places(sample, &members);
+        let numbered: Vec<(&Member, u64)> = members.iter().map(|member| (*member, member.number)).collect();
         let (most_wrong, most_right) = (KEPT_FAILING, most_passing(first.spec.output_len()));
-        let wrong = read(samples, |sample| unpacked(&sample.wrong, &places(sample), &members, most_wrong))?;
-        let right = read(samples, |sample| unpacked(&sample.right, &places(sample), &members, most_right))?;
+        let wrong = read(samples, |sample| unpacked(&sample.wrong, &places(sample), &numbered, most_wrong))?;
+        let right = read(samples, |sample| unpacked(&sample.right, &places(sample), &numbered, most_right))?;
+        let cases = |rows: &Option<ReadRows>| -> BTreeSet<(usize, CaseRef)> {
+            rows.iter().flat_map(ReadRows::rows).map(|(place, _)| place).collect()
+        };
+        if !cases(&wrong).is_disjoint(&cases(&right)) {
+            return Err(BadSample("a case is among those that fail and among those that pass"));
+        }
         let evaluated = |rows: Option<ReadRows>, most| match rows {
             Some(rows) => rows.with(|(place, case), values| self.row(members[place], case, values, (stage, &known))),
             None => Sample::new(most),
@@ -158,6 +168,27 @@ impl Context<'_> {
         group.problems = undecided.or(told.systematic).into_iter().collect::<Vec<Problem>>();
         Ok(())
     }
+}
+
+/// Checks that samples say no more than the group's own counts do.
+fn agrees(group: &Group, samples: &[&GroupSample]) -> Result<(), BadSample> {
+    let sum = |of: &dyn Fn(&GroupSample) -> u64| samples.iter().fold(0, |sum: u64, one| sum.saturating_add(of(one)));
+    let (verdicts, open) = (sum(&|one| one.random[0]), sum(&|one| one.random[1]));
+    let (wrong, right) = (sum(&|one| one.wrong.of), sum(&|one| one.right.of));
+    let totals = &group.totals;
+    let is_too_much = verdicts > totals.verdicts
+        || open > totals.indeterminate.min(verdicts)
+        || wrong > totals.failed.saturating_add(totals.expected_failures)
+        || wrong.saturating_add(right) > totals.cases;
+    let is_named_twice = |one: &&GroupSample| {
+        let mut names: Vec<&String> = one.formulas.iter().collect();
+        names.sort_unstable();
+        names.windows(2).any(|pair| pair[0] == pair[1])
+    };
+    if samples.iter().any(is_named_twice) {
+        return Err(BadSample("it names a formula twice"));
+    }
+    if is_too_much { Err(BadSample("its counts are not those of the group")) } else { Ok(()) }
 }
 
 /// The places of a sample's formulas among the whole's.

@@ -167,7 +167,7 @@ fn missing(group: &Group) -> String {
 /// What is wrong with a group, on one line.
 pub(crate) fn sentence(group: &Group) -> String {
     let mut said = match group.asked() {
-        None => format!("{} of {} verdicts failed", group.totals.failed, group.totals.verdicts),
+        None => format!("{} of {} verdicts failed", thousands(group.totals.failed), thousands(group.totals.verdicts)),
         Some(CaseCounts { totals, .. }) => {
             let mut said = format!("{} of {} fail", thousands(totals.failed), cases(totals.asked));
             if totals.broken > 0 {
