@@ -38,6 +38,9 @@ pub struct SelftestDocument {
     /// The mistakes that are known, in the order of reports, where formulas were tried.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mistakes: Vec<Mistake>,
+    /// Noise in the place of formulas, where it was tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<NoiseRecord>,
     /// What the smallest errors are of, where they were measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub named_from: Option<NamedFrom>,
@@ -65,6 +68,38 @@ pub enum Finding {
     Caught,
     /// Not caught.
     Survived,
+}
+
+/// Noise in the place of formulas: what was answered, and what was explained all the same.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct NoiseRecord {
+    /// Formulas with a kind of noise that were tried.
+    pub tried: u64,
+    /// Those that were explained.
+    pub explained: Vec<ExplainedNoise>,
+}
+
+impl NoiseRecord {
+    /// Whether nothing was explained but what the mistaken formula gives itself.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.explained.iter().all(|one| one.is_made)
+    }
+}
+
+/// Noise that was explained.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+pub struct ExplainedNoise {
+    /// The formula, or the scene.
+    pub formula: String,
+    /// What was answered.
+    pub noise: String,
+    /// What was said of it.
+    pub says: String,
+    /// The part of the wrong numbers that whoever makes the mistake gives.
+    pub given: f64,
+    /// Whether that is nearly all, so that the mistake makes this noise.
+    pub is_made: bool,
 }
 
 /// A mistake in a formula.

@@ -2,7 +2,7 @@
 
 use super::common::{in_common, share};
 use super::concerned::concerned;
-use super::evidence::{EXCLUDED, Fit, Foretold, Right, bits_left, fit, is_wrong};
+use super::evidence::{EXCLUDED, Fit, Foretold, Right, bits_left, is_inside, is_wrong};
 use super::explanation::{FormulaDiagnosis, TriedMistake, is_equal, rank, told};
 use super::factor::{self, Scaled};
 use super::fault::Concerned;
@@ -22,13 +22,15 @@ const MOST_OFF_OF_RANDOM: f64 = 0.015;
 const MOST_OFF: f64 = 0.1;
 /// The share of the random passing cases that would fail by it.
 const MOST_MISSING: f64 = 0.1;
-/// The bits by which it must beat chance.
-const LEAST_EVIDENCE: f64 = 6.0;
+/// The bits of evidence that an explanation needs beyond those that it takes to say which of all that are tried it is.
+const LEAST_EVIDENCE: f64 = 64.0;
 /// The most bits of evidence that an output contributes where all answers to it are the same number although the mistake would have given
 /// another number in some case.
 const MOST_CONSTANT: f64 = 4.0;
+/// The bits that a wrong number tells at least where the mistake computes exactly that number.
+const OWN: f64 = 2.0;
 /// The bits that are told by which cases fail, at most.
-const MOST_FORETOLD: f64 = 24.0;
+const MOST_FORETOLD: f64 = 128.0;
 /// The share of failing cases that lie inside, where the mistake promises something, at least.
 const LEAST: f64 = 0.1;
 /// The bits that it takes to say by which factor which parameter is off.
@@ -114,7 +116,7 @@ impl Trial<'_> {
         let mut outside = 0;
         self.probes(probes).all(|row| {
             tried.interval(row.inputs, self.profile, &mut legal);
-            outside += usize::from(fit(row.values, &legal) == Fit::Outside);
+            outside += usize::from(!is_inside(row.values, &legal));
             outside <= most
         })
     }
@@ -232,7 +234,7 @@ impl Trial<'_> {
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
         let mut allows = |row: &Answered<'_>, one: usize| {
             self.legal([best, next][one], &variations[one], row, &mut legal);
-            fit(row.values, &legal) != Fit::Outside
+            is_inside(row.values, &legal)
         };
         let simple = |row: &&Answered<'_>| telling(row.inputs, row.is_random());
         let mut rows: Vec<&Answered<'_>> = self.failing.iter().chain(self.passing).collect();
@@ -297,7 +299,7 @@ impl Trial<'_> {
                 let (a, b) = (row.values[place], own[place]);
                 a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
             };
-            match fit(row.values, &legal) {
+            match self.right.fit(row, &legal, &own) {
                 Fit::Outside => {
                     excluded += 1;
                     of_random += usize::from(row.is_random());
@@ -306,16 +308,19 @@ impl Trial<'_> {
                     }
                     continue;
                 }
-                // Where the mistake permits any answer, it explains an answer only if it computes exactly that answer in f32.
-                Fit::Open if !(0..outputs).all(is_own) => {
+                // Where the mistake permits nearly any number, it explains one only if it computes exactly that number in f32.
+                Fit::Open if !(0..outputs).all(|place| row.is_right(place) || is_own(place)) => {
                     tally.open += 1;
                     continue;
                 }
                 Fit::Open | Fit::Inside => tally.explained += 1,
             }
             for (place, chance) in chance.iter().enumerate() {
-                let left = if is_own(place) { 0.0 } else { bits_left(row.values[place], &legal[place]) };
-                tally.by_output[place] += (chance - left).max(0.0);
+                if is_own(place) {
+                    tally.by_output[place] += if row.is_right(place) { *chance } else { chance.max(OWN) };
+                } else if !self.right.is_wide(place, &legal[place]) {
+                    tally.by_output[place] += (chance - bits_left(row.values[place], &legal[place])).max(0.0);
+                }
                 tally.varies[place] |= !is_own(place);
             }
         }
@@ -337,7 +342,7 @@ impl Trial<'_> {
         for row in self.passing {
             tried.interval(row.inputs, self.profile, &mut legal);
             tried.evaluate(row.inputs, &mut own);
-            let (would_fail, is_contradicted) = (is_wrong(&own, row.legal), fit(row.values, &legal) == Fit::Outside);
+            let (would_fail, is_contradicted) = (is_wrong(&own, row.legal), !is_inside(row.values, &legal));
             tally.foretold.take(false, would_fail);
             for (place, varies) in tally.varies.iter_mut().enumerate() {
                 *varies |= own[place].to_bits() != row.values[place].to_bits();

@@ -8,23 +8,16 @@ use std::collections::HashSet;
 /// What a row's answer says of the intervals of its outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fit {
-    /// Every output lies in its interval, and one of them at least is bound to something.
+    /// Every output lies in its interval, and a wrong one in an interval that tells something.
     Inside,
-    /// The specification promises nothing for this answer, so any value is legal.
+    /// Every output lies in its interval, but those of all wrong ones are so wide that any number would.
     Open,
     /// An output lies outside.
     Outside,
 }
 
-/// Whether an answer is one that these intervals allow.
-pub(super) fn fit(values: &[f32], legal: &[Accept]) -> Fit {
-    let is_inside = values.iter().zip(legal).all(|(&value, legal)| legal.contains(value.into()));
-    match (is_inside, legal.iter().all(Accept::is_any)) {
-        (false, _) => Fit::Outside,
-        (true, true) => Fit::Open,
-        (true, false) => Fit::Inside,
-    }
-}
+/// An interval that is wider than this part of the range of right answers tells nothing of its output.
+pub(super) const WIDE: f64 = 1.0 / 16.0;
 
 /// The bits that an interval leaves open of a number in it.
 pub(super) fn bits_left(value: f32, legal: &Accept) -> f64 {
@@ -42,6 +35,8 @@ pub(super) struct Right {
     /// How many bits it takes to state each number of a failing answer when only the right formula is known: where the number is right, the
     /// bits that its interval leaves open; where it is wrong, all of its bits.
     pub(super) bits: Vec<f64>,
+    /// The range of each output's right answers.
+    ranges: Vec<f64>,
     /// For each output the number that every answer has there, failing or passing: such answers tell nothing of how they came about.
     pub(super) constant: Vec<Option<u32>>,
 }
@@ -67,8 +62,35 @@ impl Right {
             let first = all.next()?;
             all.all(|other| other == first).then_some(first)
         };
-        Self { bits, constant: (0..outputs).map(constant).collect() }
+        let range = |place: usize| {
+            let all = failing.iter().chain(passing).map(|row| row.reference[place]).filter(|x| x.is_finite());
+            let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            (high - low).max(0.0)
+        };
+        Self { bits, ranges: (0..outputs).map(range).collect(), constant: (0..outputs).map(constant).collect() }
     }
+}
+
+impl Right {
+    /// Whether an interval is so wide that it tells nothing of an output.
+    pub(super) fn is_wide(&self, place: usize, legal: &Accept) -> bool {
+        legal.is_any() || legal.width() > WIDE * self.ranges[place]
+    }
+
+    /// Whether an answer is one that these intervals allow. `own` is what the mistake computes in f32: it explains a NaN by giving one.
+    pub(super) fn fit(&self, row: &Answered<'_>, legal: &[Accept], own: &[f32]) -> Fit {
+        let is_unexplained = |(value, own): (&f32, &f32)| value.is_nan() && !own.is_nan();
+        if !is_inside(row.values, legal) || row.values.iter().zip(own).any(is_unexplained) {
+            return Fit::Outside;
+        }
+        let tells = |place: usize| !row.is_right(place) && !self.is_wide(place, &legal[place]);
+        if (0..legal.len()).any(tells) { Fit::Inside } else { Fit::Open }
+    }
+}
+
+/// Whether each number of an answer lies in its interval.
+pub(super) fn is_inside(values: &[f32], legal: &[Accept]) -> bool {
+    values.iter().zip(legal).all(|(&value, legal)| legal.contains(value.into()))
 }
 
 /// Which cases fail, and which would if a mistake were made: counts of cases.

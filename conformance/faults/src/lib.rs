@@ -19,6 +19,7 @@ mod fault;
 mod group;
 mod look;
 mod mistakes;
+pub mod noise;
 mod op;
 mod row;
 pub mod scene;

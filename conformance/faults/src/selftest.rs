@@ -81,17 +81,17 @@ fn try_all(member: &Member, options: &SelftestOptions, tried: &dyn Fn(&str)) -> 
 }
 
 /// The cases of one formula, with what is right and what is legal in each.
-struct Bench<'a> {
-    member: &'a Member,
+pub(super) struct Bench<'a> {
+    pub(super) member: &'a Member,
     options: &'a SelftestOptions,
     cases: Vec<CaseRef>,
-    inputs: Vec<Vec<f32>>,
-    reference: Vec<f64>,
+    pub(super) inputs: Vec<Vec<f32>>,
+    pub(super) reference: Vec<f64>,
     legal: Vec<Accept>,
 }
 
 impl<'a> Bench<'a> {
-    fn new(member: &'a Member, options: &'a SelftestOptions, random: u64) -> Self {
+    pub(super) fn new(member: &'a Member, options: &'a SelftestOptions, random: u64) -> Self {
         let spec = &member.spec;
         let cases: Vec<CaseRef> = member.fixed().chain((0..random).map(CaseRef::Random)).collect();
         let inputs: Vec<Vec<f32>> = cases
@@ -113,7 +113,7 @@ impl<'a> Bench<'a> {
         Self { member, options, cases, inputs, reference, legal }
     }
 
-    fn outputs(&self) -> usize {
+    pub(super) fn outputs(&self) -> usize {
         self.member.spec.output_len()
     }
 
@@ -135,7 +135,7 @@ impl<'a> Bench<'a> {
         self.inputs.iter().map(answer).collect()
     }
 
-    fn answered<'b>(&'b self, values: &'b [Vec<f32>]) -> Vec<Answered<'b>> {
+    pub(super) fn answered<'b>(&'b self, values: &'b [Vec<f32>]) -> Vec<Answered<'b>> {
         let rows = self.inputs.iter().zip(values).enumerate();
         rows.map(|(place, (inputs, values))| {
             let case = self.cases[place];

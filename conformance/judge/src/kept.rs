@@ -49,6 +49,12 @@ pub struct Answered<'a> {
 }
 
 impl Answered<'_> {
+    /// Whether the number of an output is legal.
+    #[must_use]
+    pub fn is_right(&self, output: usize) -> bool {
+        self.legal[output].contains(self.values[output].into())
+    }
+
     /// Whether its inputs were drawn, and are none that a formula is hard for.
     #[must_use]
     pub const fn is_random(&self) -> bool {

@@ -1,7 +1,10 @@
 //! The self-test of formulas as text.
 
 use crate::table::{Align, TextTable};
-use lightmeter_document::selftest::{Clean, Finding, Kill, Mistake, Record, Resolution, SceneResolution, family_of};
+use lightmeter_document::selftest::{
+    Clean, Finding, Kill, Mistake, NoiseRecord, Record, Resolution, SceneResolution, family_of,
+};
+use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
 
 /// The kill matrix by mistake, what went wrong, and the resolution where it was measured.
@@ -93,4 +96,20 @@ pub fn scene_resolutions(resolutions: &[SceneResolution], out: &mut impl Write) 
         table.row([scene.to_string(), parameter.to_string(), percent(*pixel), percent(*image)]);
     }
     if resolutions.is_empty() { Ok(()) } else { write!(out, "\n{}", table.text("")) }
+}
+/// What noise was explained.
+#[must_use]
+pub fn noise(record: &NoiseRecord) -> String {
+    let wrong = record.explained.iter().filter(|one| !one.is_made).count();
+    let made = record.explained.len() - wrong;
+    let mut text = format!(
+        "noise in the place of formulas: {} answers, {wrong} explained, and {made} that the mistaken formula gives itself\n",
+        thousands(record.tried)
+    );
+    for one in &record.explained {
+        let mark = if one.is_made { ' ' } else { '✗' };
+        text +=
+            &format!("{mark} {}: {}: {} ({:.0} % as it gives)\n", one.formula, one.noise, one.says, 100.0 * one.given);
+    }
+    text
 }

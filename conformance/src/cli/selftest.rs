@@ -13,10 +13,11 @@ use lightmeter::document::Document as _;
 use lightmeter::document::event::Stop;
 use lightmeter::document::report::Interrupted;
 use lightmeter::document::selftest::{
-    Mistake, NamedFrom, Record, Resolution, SCHEMA, SceneRecord, SceneResolution, SelftestDocument, UnitFinding,
-    UnitRow,
+    Mistake, NamedFrom, NoiseRecord, Record, Resolution, SCHEMA, SceneRecord, SceneResolution, SelftestDocument,
+    UnitFinding, UnitRow,
 };
 use lightmeter::faults::calibrate::{CASES, calibrate};
+use lightmeter::faults::noise::noise;
 use lightmeter::faults::scene::calibrate::calibrate as measure;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
@@ -46,6 +47,8 @@ enum Part {
     BlendUnit,
     /// Mistakes of whole renderers, in the built-in scenes.
     Scenes,
+    /// Noise in the place of formulas, which nothing may explain. It takes long, and runs only where it is named.
+    Noise,
 }
 
 /// Show that the suite catches the mistakes that it knows and tells them by name: in formulas, in scenes, and of a blend unit
@@ -54,7 +57,7 @@ pub(crate) struct Selftest {
     /// Formulas to make mistakes in: globs of ids, as for `run`; without any, all, and scenes and the blend unit too
     #[arg(value_name = "FILTER")]
     filter: Vec<String>,
-    /// Only one of the three
+    /// Only one of them
     #[arg(long, value_enum, value_name = "PART")]
     only: Option<Part>,
     /// Random cases for each formula; a quarter of them for each of the many blend states
@@ -94,12 +97,13 @@ struct Tested {
     scenes: Option<SceneRecord>,
     scene_resolutions: Vec<SceneResolution>,
     unit: Option<Vec<UnitRow>>,
+    noise: Option<NoiseRecord>,
     interrupted: Option<Interrupted>,
 }
 
 impl Selftest {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
-        if !self.wants(Part::Formulas) && !self.filter.is_empty() {
+        if !self.wants(Part::Formulas) && self.only != Some(Part::Noise) && !self.filter.is_empty() {
             bail!("a filter selects formulas; remove it, or remove the `--only` that leaves formulas out");
         }
         let targets = Targets::asked(&self.target).unwrap_or_else(|| TargetFormat::ALL.to_vec());
@@ -133,6 +137,7 @@ impl Selftest {
             mistakes: if tested.formulas.is_some() { mistakes() } else { vec![] },
             named_from: (!tested.resolutions.is_empty()).then_some(NAMED_FROM),
             calibration: tested.formulas.is_some().then(|| tested.resolutions.clone()),
+            noise: tested.noise.clone(),
             scenes: tested.scenes.clone(),
             scene_calibration: tested.scene_resolutions.clone(),
             interrupted: tested.interrupted.clone(),
@@ -155,6 +160,9 @@ impl Selftest {
         };
         if self.wants(Part::Formulas) {
             self.test_formulas(filter, stop, &mut say, &mut tested)?;
+        } else if self.only == Some(Part::Noise) {
+            say("noise in the place of every formula");
+            tested.noise = Some(noise(&self.options(filter, stop), &|formula| happens("tried", formula)));
         }
         let is_asked = |part| self.wants(part) && self.filter.is_empty() && !stop.is_set();
         if is_asked(Part::Scenes) {
@@ -176,6 +184,17 @@ impl Selftest {
         Ok(tested)
     }
 
+    fn options(&self, filter: Filter, stop: &Stop) -> formulas::SelftestOptions {
+        formulas::SelftestOptions {
+            filter,
+            cases: self.formula_cases,
+            seed: self.seed,
+            draws: self.draws,
+            profile: self.profile,
+            stop: stop.clone(),
+        }
+    }
+
     fn test_formulas(
         &self,
         filter: Filter,
@@ -184,14 +203,7 @@ impl Selftest {
         tested: &mut Tested,
     ) -> anyhow::Result<()> {
         say("every mistake in every formula that it concerns");
-        let options = formulas::SelftestOptions {
-            filter,
-            cases: self.formula_cases,
-            seed: self.seed,
-            draws: self.draws,
-            profile: self.profile,
-            stop: stop.clone(),
-        };
+        let options = self.options(filter, stop);
         let record = formulas::selftest(&options, &|formula| happens("tried", formula));
         if record.clean.is_empty() && !stop.is_set() {
             let catalogue = catalogue();
@@ -214,6 +226,7 @@ impl Tested {
             && self.unit.iter().flatten().all(|row| row.finding.is_good())
             && self.formulas.iter().all(Record::is_good)
             && self.scenes.iter().all(SceneRecord::is_good)
+            && self.noise.iter().all(NoiseRecord::is_good)
     }
 
     /// The parts that were tested, an empty line between them.
@@ -233,6 +246,7 @@ impl Tested {
         if let Some(rows) = &self.unit {
             parts.push(table(targets, rows)?);
         }
+        parts.extend(self.noise.as_ref().map(report::noise));
         parts.extend(self.interrupted.as_ref().map(|interrupted| format!("interrupted: {interrupted}\n")));
         Ok(parts.join("\n"))
     }

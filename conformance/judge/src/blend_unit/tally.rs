@@ -16,6 +16,7 @@ use lightmeter_scene::blend::Route;
 use lightmeter_scene::blend::Separate;
 use lightmeter_scene::target::{Encoding, TargetFormat};
 use std::borrow::Borrow;
+use std::collections::HashSet;
 
 /// A state by one of its routes on a target, and the profile that its pixels are judged by.
 #[derive(Clone, Copy, Debug)]
@@ -198,34 +199,115 @@ pub struct FailingPixel {
 }
 
 impl FailingPixel {
-    /// Whether a fault would have left what was left: a value that its rules allow, or the very step that a store gives.
-    fn is_as_by(&self, fault: &UnitFault) -> bool {
+    /// What a fault would have left: of each component the least and the greatest value that its rules allow, or the very step that a store
+    /// gives.
+    fn by(&self, fault: &UnitFault) -> [[f64; 2]; 4] {
         let DrawnState { program, target, profile, .. } = self.drawn;
         if fault.rules.store != Store::Nearest {
-            let stored = embedded::blend(program, target, &self.case, &fault.rules);
-            return (0..4).all(|k| stored[k].to_bits() == self.pixel[k].to_bits());
+            return embedded::blend(program, target, &self.case, &fault.rules).map(|stored| [stored; 2]);
         }
         let expected = expect(program, target, &self.case, &fault.rules, profile);
-        (0..4).all(|k| expected.judge(target, k, self.pixel[k]).outcome == Outcome::Pass)
+        std::array::from_fn(|k| [expected.low[k], expected.high[k]])
+    }
+
+    /// Whether a component is one of these values. A NaN is so where it is the only one.
+    fn is_within(&self, k: usize, [low, high]: [f64; 2]) -> bool {
+        let value = self.pixel[k];
+        (low <= value && value <= high) || (value.is_nan() && low.to_bits() == value.to_bits())
     }
 }
 
-/// The faults that explain the most of the failing pixels, if nine in ten are explained. In some states two faults come to the same. `None` where
-/// nothing fails.
+/// An interval that is wider than this part of the range of right values tells nothing of its component.
+const WIDE: f64 = 1.0 / 16.0;
+/// The most bits that a component tells; one that is like another tells 1.
+const BITS: f64 = 8.0;
+/// The bits of evidence that an explanation needs beyond the logarithm of the number of those that are tried.
+const LEAST_EVIDENCE: f64 = 64.0;
+
+/// Failing pixels, with what is right of each.
+struct Failing<'a> {
+    pixels: &'a [FailingPixel],
+    right: Vec<ExpectedPixel>,
+    /// The range of right values of each component.
+    ranges: [f64; 4],
+}
+
+impl<'a> Failing<'a> {
+    fn new(pixels: &'a [FailingPixel]) -> Self {
+        let expected = |one: &FailingPixel| {
+            let DrawnState { program, target, profile, .. } = one.drawn;
+            expect(program, target, &one.case, &Rules::RIGHT, profile)
+        };
+        let right: Vec<ExpectedPixel> = pixels.iter().map(expected).collect();
+        let range = |k: usize| {
+            let all = right.iter().map(|right| right.reference[k]).filter(|x| x.is_finite());
+            let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            (high - low).max(0.0)
+        };
+        let ranges = std::array::from_fn(range);
+        Self { pixels, right, ranges }
+    }
+
+    /// How many pixels a fault explains, and the bits by which it beats chance. Only wrong components tell anything, each the more, the narrower
+    /// what the fault would have left, and one like another a single bit.
+    fn by(&self, fault: &UnitFault) -> (usize, f64) {
+        let (mut explained, mut evidence, mut told) = (0, 0.0, HashSet::new());
+        for (pixel, right) in self.pixels.iter().zip(&self.right) {
+            let left = pixel.by(fault);
+            if !(0..4).all(|k| pixel.is_within(k, left[k])) {
+                continue;
+            }
+            let mut tells = false;
+            for (k, [low, high]) in left.into_iter().enumerate() {
+                let value = pixel.pixel[k];
+                let is_right = right.low[k] <= value && value <= right.high[k];
+                let (width, range) = (high - low, self.ranges[k].max(value.abs()));
+                // Of 8 bits a wrong value is any step.
+                let (step, among) = match pixel.drawn.target.encoding() {
+                    Encoding::Unorm8 | Encoding::Srgb8 => (1.0, 256.0),
+                    Encoding::Float16 => (F16::ulp(value), range),
+                    Encoding::Float32 => (F32::ulp(value), range),
+                };
+                if is_right || width > WIDE * among {
+                    continue;
+                }
+                tells = true;
+                let is_new = told.insert((k, value.to_bits(), low.to_bits(), high.to_bits()));
+                let bits = (among / (width + step)).log2();
+                evidence += if bits.is_nan() { 0.0 } else { bits.clamp(0.0, if is_new { BITS } else { 1.0 }) };
+            }
+            explained += usize::from(tells);
+        }
+        (explained, evidence)
+    }
+}
+
+/// The faults that explain the most of the failing pixels, if nine in ten are explained by more than chance. In some states two faults come to the
+/// same. `None` where nothing fails.
 #[must_use]
 pub fn diagnose(samples: &[FailingPixel]) -> Option<Diagnosis> {
     let target = samples.first()?.drawn.target;
-    let tried = FAULTS.iter().filter(|fault| fault.concerns(target));
-    let explained: Vec<(&UnitFault, usize)> =
-        tried.map(|fault| (fault, samples.iter().filter(|sample| sample.is_as_by(fault)).count())).collect();
-    let most = explained.iter().map(|(_, count)| *count).max()?;
-    let is_enough = 10 * most >= 9 * samples.len();
-    let alike = explained.iter().filter(|(_, count)| is_enough && *count == most).enumerate();
-    let explanations = alike.map(|(place, (fault, _))| Explanation {
+    let failing = Failing::new(samples);
+    let tried: Vec<(&UnitFault, usize, f64)> = FAULTS
+        .iter()
+        .filter(|fault| fault.concerns(target))
+        .map(|fault| {
+            let (explained, evidence) = failing.by(fault);
+            (fault, explained, evidence)
+        })
+        .collect();
+    #[expect(clippy::cast_precision_loss, reason = "a few faults")]
+    let least = (tried.len() as f64).log2() + LEAST_EVIDENCE;
+    let is_told = |&&(_, explained, evidence): &&(&UnitFault, usize, f64)| {
+        10 * explained >= 9 * samples.len() && evidence >= least
+    };
+    let most = tried.iter().filter(is_told).map(|(_, explained, _)| *explained).max();
+    let alike = tried.iter().filter(is_told).filter(|(_, explained, _)| Some(*explained) == most).enumerate();
+    let explanations = alike.map(|(place, (fault, explained, _))| Explanation {
         says: format!("as if {}", fault.says),
         mistakes: vec![],
         parameter: None,
-        explained: most as u64,
+        explained: *explained as u64,
         open: 0,
         standing: if place == 0 { Standing::Best } else { Standing::Equal },
     });
