@@ -48,3 +48,41 @@ fn bad_usage_is_said() {
         assert!(code(&output) == status && stderr(&output).contains(message), "{}", stderr(&output));
     }
 }
+
+/// Numbers that come of no mistake, in the place of lights whose sum some mistakes leave nearly open.
+#[test]
+fn noise_is_explained_by_nothing() {
+    let file = folder("noise").join("noise.glsl");
+    let functions = "vec4 constant(vec3 p) { return vec4(9.0, 8.0, 7.0, 1.0); }\n\
+                     vec4 ofPosition(vec3 p) { return vec4(fract(sin(dot(p, vec3(12.9, 78.2, 37.7))) * vec3(43758.5, 1251.3, 917.1)), 1.0); }";
+    std::fs::write(&file, functions).expect("it can be written");
+    if !crate::needs::lacks_lavapipe() {
+        for formula in ["lighting/spot", "lighting/point-blinn"] {
+            for function in ["constant", "ofPosition"] {
+                let function = format!("{function}@{}", file.display());
+                let args = ["run", formula, "--cases", "512", "--function", &function, "--format", "json"];
+                let output = lightmeter(&args);
+                let report: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+                assert_eq!(code(&output), 1, "{}", stderr(&output));
+                for group in report["groups"].as_array().expect("an array") {
+                    assert!(group["failed"].as_u64() > Some(100), "{group}");
+                    let explanations = &group["diagnosis"]["explanations"];
+                    assert!(
+                        explanations.as_array().is_none_or(Vec::is_empty),
+                        "{function} as {formula}: {explanations}"
+                    );
+                }
+            }
+        }
+    }
+    let args = ["selftest", "--only", "noise", "fog/exp", "lighting/point-phong", "--formula-cases", "64"];
+    let output = lightmeter(&args);
+    let text = stdout(&output);
+    assert_eq!(code(&output), 0, "{text}{}", stderr(&output));
+    assert!(
+        text.starts_with("noise in the place of formulas: ") && text.contains(" answers, 0 explained, and "),
+        "{text}"
+    );
+    // What the mistaken formula gives itself is told, and is no failure.
+    assert!(text.contains("fog/exp: always 0: "), "{text}");
+}
