@@ -488,6 +488,7 @@ mod tests {
     use lightmeter_catalogue::cases::Kind;
     use lightmeter_catalogue::select::catalogue;
     use lightmeter_gpu::Shaders;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// Each formula of lighting, fog and attenuation is bound by the names that our own functions have, in WGSL and as naga writes it in GLSL.
     #[test]
@@ -526,11 +527,16 @@ mod tests {
 
     /// What the variables of a fragment shader in GLSL, or of a function of it, are bound to.
     fn binding(id: &str, text: &str, part: &Part) -> Result<Vec<(String, String)>, String> {
-        let folder = std::env::temp_dir().join(format!("lightmeter-names-{}", std::process::id()));
+        // Tests of a program run side by side.
+        static FOLDERS: AtomicUsize = AtomicUsize::new(0);
+        let number = FOLDERS.fetch_add(1, Ordering::Relaxed);
+        let folder = std::env::temp_dir().join(format!("lightmeter-names-{}-{number}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder can be made");
         let path = folder.join("shader.frag");
         std::fs::write(&path, text).expect("it can be written");
-        let source = ShaderSource::read(&path).map_err(|error| error.to_string())?;
+        let source = ShaderSource::read(&path).map_err(|error| error.to_string());
+        std::fs::remove_dir_all(&folder).expect("it can be removed");
+        let source = source?;
         let program = ShaderProgram::new(&path, &source, part).map_err(|error| error.to_string())?;
         let catalogue = catalogue();
         let member = catalogue.iter().find(|member| member.spec.id == id).expect(id);

@@ -1,5 +1,6 @@
 //! `lightmeter special`.
 
+use super::clock::now;
 use super::options::Format;
 use super::progress::Bar;
 use super::signals::{status_of, stopped_by_signals};
@@ -49,7 +50,7 @@ impl Special {
         let mut bar = Bar::new(None, "adapters");
         let report = run(&subjects, &code, &stop, &mut bar);
         bar.bar.finish_and_clear();
-        let report = report?;
+        let report = SpecialReport { command: Some(super::command()), made_at: now(), ..report? };
         if report.outcomes.is_empty() && report.interrupted.is_none() {
             let message = "nothing could be probed: the embedded implementation has no shading language";
             return Err(NothingToRun(message.into()).into());

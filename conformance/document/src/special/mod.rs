@@ -151,6 +151,15 @@ pub struct SpecialReport {
     /// `lightmeter.special/1`.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: Word,
+    /// The command, but for where its result goes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
+    /// The version of lightmeter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub version: Option<Word>,
+    /// When it was made, in UTC, such as `2026-05-01T12:00:00Z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_at: Option<String>,
     /// What was probed.
     pub adapters: Vec<Identity>,
     /// What is on record for them.

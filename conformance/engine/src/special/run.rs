@@ -133,6 +133,9 @@ fn nothing_yet() -> SpecialReport {
     let source = |source: Source| ProbeSource { section: source.section().into(), says: source.says().into() };
     SpecialReport {
         schema: special::SCHEMA.into(),
+        command: None,
+        version: Some(env!("CARGO_PKG_VERSION").into()),
+        made_at: None,
         adapters: vec![],
         records: vec![],
         probes: PROBES.iter().map(row).collect(),
