@@ -46,7 +46,7 @@ impl<'a> RowGroup<'a> {
         Some(Self { turn: *place, members, rows, scouted: vec![] })
     }
 
-    /// Has a few cases of each formula judged before all others: its hard cases and the first random ones, of a group so many in all.
+    /// Has a few cases judged before all others: each formula's hard cases, and its first random ones, of which the group has about `random`.
     pub(crate) fn scout(&mut self, random: usize) {
         let few = |rows: &Selected| rows.few((random / self.members.len()).max(1));
         self.scouted = cases_of(&self.rows.iter().map(few).collect::<Vec<_>>()).collect();

@@ -17,7 +17,7 @@ pub(super) enum Fit {
 }
 
 /// An interval that is wider than this part of the range of right answers tells nothing of its output.
-pub(super) const WIDE: f64 = 1.0 / 16.0;
+const WIDE: f64 = 1.0 / 16.0;
 
 /// The bits that an interval leaves open of a number in it.
 pub(super) fn bits_left(value: f32, legal: &Accept) -> f64 {
@@ -69,9 +69,7 @@ impl Right {
         };
         Self { bits, ranges: (0..outputs).map(range).collect(), constant: (0..outputs).map(constant).collect() }
     }
-}
 
-impl Right {
     /// Whether an interval is so wide that it tells nothing of an output.
     pub(super) fn is_wide(&self, place: usize, legal: &Accept) -> bool {
         legal.is_any() || legal.width() > WIDE * self.ranges[place]

@@ -2,7 +2,7 @@
 
 use super::common::share;
 use super::diagnose::diagnose;
-use super::evidence::WIDE;
+use super::evidence::Right;
 use super::explanation::TriedMistake;
 use super::group::group_verdict;
 use super::selftest::{Bench, SelftestOptions};
@@ -53,7 +53,7 @@ const ECHOES: usize = 6;
 const LEAST_GIVEN: f64 = 0.99;
 
 /// Answers every kind of noise, with and without the right alpha, in every formula that a filter selects, and lists what is explained all the
-/// same. Once it is told to stop, no other formula is tried.
+/// same. Once it is told to stop, it tries no other formula.
 #[must_use]
 pub fn noise(options: &SelftestOptions, tried: &(dyn Fn(&str) + Sync)) -> NoiseRecord {
     let members = catalogue();
@@ -156,10 +156,10 @@ const fn narrow(x: f64) -> f32 {
     x as f32
 }
 
-/// What is said of answers: an explanation, and what is wrong with all of them together.
+/// The explanation of answers that fail; of answers that all pass, what is wrong with them together.
 fn explained(bench: &Bench<'_>, values: &[Vec<f32>], options: &SelftestOptions) -> Vec<ExplainedNoise> {
     let rows = bench.answered(values);
-    let failing: Vec<Answered<'_>> = rows.iter().filter(|row| row.is_wrong).copied().collect();
+    let (failing, passing): (Vec<Answered<'_>>, Vec<Answered<'_>>) = rows.iter().copied().partition(|row| row.is_wrong);
     let one = |says: String, given: f64| ExplainedNoise {
         says,
         given,
@@ -171,23 +171,23 @@ fn explained(bench: &Bench<'_>, values: &[Vec<f32>], options: &SelftestOptions) 
         return found.into_iter().map(|found| one(found.says, 0.0)).collect();
     }
     let found = diagnose(bench.member, &rows, options.profile);
-    let told = found.explanations.first().map(|best| one(best.says.clone(), given(bench, best, &failing, options)));
-    told.into_iter().collect()
+    let right = Right::new(bench.outputs(), &failing, &passing);
+    let given = |best: &TriedMistake| given(bench, best, (&failing, &right), options);
+    found.explanations.first().map(|best| one(best.says.clone(), given(best))).into_iter().collect()
 }
 
 /// The part of the wrong numbers that the mistaken formula gives: the very number, or one within an interval that tells something.
-fn given(bench: &Bench<'_>, best: &TriedMistake, failing: &[Answered<'_>], options: &SelftestOptions) -> f64 {
+fn given(
+    bench: &Bench<'_>,
+    best: &TriedMistake,
+    (failing, right): (&[Answered<'_>], &Right),
+    options: &SelftestOptions,
+) -> f64 {
     let known = concerned(bench.member);
     let find = |name: &&'static str| known.iter().find(|of| of.fault.name == *name).copied();
     let faults: Option<Vec<_>> = best.faults.iter().map(find).collect();
     let Some(variation) = faults.and_then(|faults| Variation::of(bench.member, &faults)) else { return 0.0 };
     let outputs = bench.outputs();
-    let range = |k: usize| {
-        let all = bench.reference.iter().skip(k).step_by(outputs).filter(|x| x.is_finite());
-        let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)]);
-        (high - low).max(0.0)
-    };
-    let ranges: Vec<f64> = (0..outputs).map(range).collect();
     let (mut own, mut legal) = (vec![0.0_f32; outputs], vec![Accept::ANY; outputs]);
     let (mut wrong, mut as_made) = (0_usize, 0_usize);
     for row in failing {
@@ -204,9 +204,8 @@ fn given(bench: &Bench<'_>, best: &TriedMistake, failing: &[Answered<'_>], optio
         for k in (0..outputs).filter(|&k| !row.is_right(k)) {
             let value = row.values[k];
             let is_own = value.to_bits() == own[k].to_bits() || value.is_nan() && own[k].is_nan();
-            let is_narrow = !legal[k].is_any() && legal[k].width() <= WIDE * ranges[k];
             wrong += 1;
-            as_made += usize::from(is_own || is_narrow && legal[k].contains(value.into()));
+            as_made += usize::from(is_own || !right.is_wide(k, &legal[k]) && legal[k].contains(value.into()));
         }
     }
     if wrong == 0 { 0.0 } else { share(as_made, wrong) }

@@ -218,7 +218,7 @@ impl CaseTally {
         self.not_passed.push(CaseRange { member, first: case, last: case, state });
     }
 
-    /// Adds what became of further cases, which follow on these.
+    /// Adds what became of further cases.
     pub fn add(&mut self, other: Self) {
         self.counts.add(&other.counts);
         self.error_passing = worse(self.error_passing, other.error_passing);
