@@ -16,7 +16,7 @@ use lightmeter_catalogue::rulings::RULINGS;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::mistakes::MistakeLook;
 use lightmeter_document::thousands;
-use lightmeter_faults::{Fault, Variation, concerning, look, typical_course};
+use lightmeter_faults::{Fault, Variation, listed, look, typical_course};
 use lightmeter_gpu::Shaders;
 use lightmeter_report::html::{course_plot, equation, prose, written};
 use maud::{Markup, html};
@@ -222,7 +222,7 @@ impl FormulaPage<'_> {
     }
 
     pub(crate) fn mistakes(&self, picture: Option<&FormulaPicture>) -> Markup {
-        let faults = concerning(self.member);
+        let faults = listed(self.member);
         let is_drawn = matches!(self.member.spec.kind, Kind::Raster(_) | Kind::Depth(_));
         let mut shown = HashSet::new();
         let sections: Vec<Markup> = faults.iter().map(|fault| self.mistake(fault, picture, &mut shown)).collect();
@@ -343,7 +343,7 @@ pub(crate) fn told<'a>(catalogue: &'a [Member]) -> Vec<Told<'a>> {
     }
     let page = |(path, members): (String, Vec<&'a Member>)| {
         let told =
-            (0..members.len()).rev().max_by_key(|&k| if members.len() > 1 { concerning(members[k]).len() } else { 0 });
+            (0..members.len()).rev().max_by_key(|&k| if members.len() > 1 { listed(members[k]).len() } else { 0 });
         let member = members[told.unwrap_or_default()];
         let others = members.iter().copied().filter(|other| other.spec.id != member.spec.id).collect();
         Told { path, member, others }
@@ -618,7 +618,7 @@ mod tests {
         let (mut grids, mut plots, mut numbers) = (0, 0, 0);
         for member in catalogue.iter().filter(is_shown) {
             let mut shown = HashSet::new();
-            for fault in concerning(member) {
+            for fault in listed(member) {
                 let page = FormulaPage {
                     member,
                     catalogue: &catalogue,

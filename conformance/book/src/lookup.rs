@@ -9,7 +9,7 @@ use lightmeter_catalogue::rulings::GLOSSARY;
 use lightmeter_catalogue::scene::library::SCENES;
 use lightmeter_catalogue::scene::load::Loaded;
 use lightmeter_catalogue::select::Member;
-use lightmeter_faults::{concerning, faults};
+use lightmeter_faults::{faults, listed};
 use lightmeter_report::html::prose;
 use lightmeter_scene::blend::{Equation, Factor};
 use maud::{Markup, html};
@@ -55,7 +55,7 @@ pub(crate) fn mistakes(catalogue: &[Member], place: &Place<'_>) -> Markup {
     let pages = told(catalogue);
     let mut concerned: BTreeMap<&str, Vec<&Told<'_>>> = BTreeMap::new();
     for page in &pages {
-        for fault in concerning(page.member) {
+        for fault in listed(page.member) {
             concerned.entry(fault.name).or_default().push(page);
         }
     }

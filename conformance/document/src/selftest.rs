@@ -152,6 +152,9 @@ pub struct Mistake {
     /// A renderer or a habit that has it, where one is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seen_in: Option<Word>,
+    /// Whether it follows from the steps and inputs of formulas, and stands in no table of mistakes.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub generated: bool,
 }
 
 /// From where on errors are named by a group verdict.

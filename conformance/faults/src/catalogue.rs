@@ -2,19 +2,33 @@
 
 use super::fault::Fault;
 use super::table;
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Every mistake, in the order of tables.
+/// Every mistake of the tables, in their order.
 #[must_use]
 pub fn faults() -> &'static [&'static Fault] {
     static ALL: LazyLock<Vec<&'static Fault>> = LazyLock::new(|| table::all().collect());
     &ALL
 }
 
+/// Every mistake that follows from the steps and inputs of some formula. Where one is as another, [`concerning`](crate::concerning) has the first.
+#[must_use]
+pub fn generated() -> &'static [&'static Fault] {
+    super::generated::all()
+}
+
+/// The place of each mistake in the order in which equally good explanations are told.
+pub(super) fn place_of(name: &str) -> Option<usize> {
+    static PLACES: LazyLock<HashMap<&'static str, usize>> =
+        LazyLock::new(|| faults().iter().chain(generated()).map(|fault| fault.name).zip(0..).collect());
+    PLACES.get(name).copied()
+}
+
 impl Fault {
     /// The mistake of that name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<&'static Self> {
-        faults().iter().copied().find(|fault| fault.name == name)
+        faults().iter().chain(generated()).copied().find(|fault| fault.name == name)
     }
 }

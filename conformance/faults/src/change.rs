@@ -63,6 +63,8 @@ pub(super) enum After {
     Copy(&'static str, &'static str),
     /// Its last number is that of an input.
     Take(&'static str, &'static str),
+    /// The red, green and blue of each colour times an input of one number, or of as many.
+    ColorsTimes(&'static str),
     /// A pixel's y counted from below.
     FromBelow,
 }
@@ -83,6 +85,10 @@ impl After {
             Self::Copy(a, b) => size(a).is_some() && size(a) == size(b),
             Self::Take(output, input) => {
                 size(output) == Some(4) && spec.place(input).is_some_and(|range| range.len() == 4)
+            }
+            Self::ColorsTimes(input) => {
+                let numbers = spec.place(input).map_or(0, |range| range.len());
+                is_color(&|count| count >= 3) && (numbers == 1 || numbers >= 3)
             }
             Self::FromBelow => spec.id == "interpolation/raster-position",
         }
@@ -114,6 +120,15 @@ impl After {
                 if let (Some(&x), Some(last)) = (taken, place(output).and_then(|range| out.get_mut(range)?.last_mut()))
                 {
                     *last = x;
+                }
+            }
+            Self::ColorsTimes(input) => {
+                let factors = spec.place(input).and_then(|range| row.get(range)).unwrap_or_default();
+                for (output, (_, range)) in spec.outputs.iter().zip(outputs(spec)) {
+                    if output.unit == "color" && range.len() >= 3 && !factors.is_empty() {
+                        let colors = out.get_mut(range).unwrap_or_default();
+                        colors.iter_mut().take(3).zip(factors.iter().cycle()).for_each(|(x, &by)| *x = *x * by);
+                    }
                 }
             }
             Self::FromBelow => {

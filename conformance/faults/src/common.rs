@@ -3,6 +3,7 @@
 use super::factor::digits;
 use lightmeter_catalogue::select::Member;
 use lightmeter_judge::diagnose::Answered;
+use std::ops::Range;
 
 /// The fewest cases of each kind that an input is held against.
 const FEWEST: usize = 8;
@@ -18,13 +19,20 @@ pub(super) fn share(part: usize, whole: usize) -> f64 {
 }
 
 /// In words: the outputs that fail, on which side, and where in an input's range.
-pub(super) fn in_common(member: &Member, failing: &[Answered<'_>], passing: &[Answered<'_>]) -> Vec<String> {
+pub(super) fn in_common(
+    member: &Member,
+    places: &Range<usize>,
+    failing: &[Answered<'_>],
+    passing: &[Answered<'_>],
+) -> Vec<String> {
     let mut told = vec![];
-    if let Some(order) = order_of(member, failing) {
-        return vec![order];
-    }
     let wrong = wrong_numbers(failing);
-    told.extend(outputs_of(member, &wrong));
+    if places.len() == member.spec.output_len() {
+        if let Some(order) = order_of(member, failing) {
+            return vec![order];
+        }
+        told.extend(outputs_of(member, &wrong));
+    }
     told.extend(side_of(&wrong));
     told.extend(range_of(member, failing, passing));
     told

@@ -1,7 +1,7 @@
 //! Which mistakes concern a formula.
 
-use super::catalogue::faults;
-use super::fault::{Concerned, Fault, is_in_a_step};
+use super::catalogue::{faults, generated};
+use super::fault::{Concerned, Fault, is_computed, is_in_a_step};
 use super::steps::steps_of;
 use super::variation::Variation;
 use lightmeter_arithmetic::Accept;
@@ -16,6 +16,12 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 #[must_use]
 pub fn concerning(member: &Member) -> Vec<&'static Fault> {
     concerned(member).iter().map(|concerned| concerned.fault).collect()
+}
+
+/// Those of the tables that concern a formula, without those that follow from its steps.
+#[must_use]
+pub fn listed(member: &Member) -> Vec<&'static Fault> {
+    concerning(member).into_iter().filter(|fault| !fault.is_generated).collect()
 }
 
 impl<'a> Variation<'a> {
@@ -44,9 +50,29 @@ pub(super) fn concerned(member: &Member) -> Arc<[Concerned]> {
         let is_sampled = matches!(spec.kind, Kind::Arithmetic | Kind::Depth(_)) || is_in_a_step(concerned.way);
         (!is_sampled || sample.shows(&concerned)).then_some(concerned)
     };
-    let found: Arc<[Concerned]> = faults().iter().filter_map(of_fault).collect();
+    let mut found: Vec<Concerned> = faults().iter().filter_map(of_fault).collect();
+    if is_computed(spec) {
+        let mut made: Vec<Vec<f64>> = found.iter().filter_map(|concerned| sample.answers(concerned)).collect();
+        for concerned in generated().iter().filter_map(of_fault) {
+            let Some(answers) = sample.answers(&concerned) else { continue };
+            // What another mistake computes as well is that one.
+            if !made.iter().any(|other| is_same(other, &answers)) {
+                made.push(answers);
+                found.push(concerned);
+            }
+        }
+    }
+    let found: Arc<[Concerned]> = found.into();
     known().insert(spec.id.clone(), Arc::clone(&found));
     found
+}
+
+/// Whether two mistakes compute the same but for the rounding of f64.
+fn is_same(some: &[f64], others: &[f64]) -> bool {
+    let is_near = |(a, b): (&f64, &f64)| {
+        a.to_bits() == b.to_bits() || (a - b).abs() <= 1e-10 * a.abs().max(b.abs()) || a.is_nan() && b.is_nan()
+    };
+    some.iter().zip(others).all(is_near)
 }
 
 /// Cases of a formula with what is legal in each, on which a mistake must show.
@@ -80,6 +106,21 @@ impl<'a> Sample<'a> {
         });
         let legal = legal.collect();
         Self { member, inputs, legal }
+    }
+
+    /// What a mistake computes in f64 of the first cases, and of as many random ones.
+    fn answers(&self, concerned: &Concerned) -> Option<Vec<f64>> {
+        const CASES: usize = 64;
+        let variation = Variation::of(self.member, &[*concerned])?;
+        let outputs = self.member.spec.output_len();
+        let random = self.inputs.iter().rev().take(CASES);
+        let mut answers = vec![];
+        for inputs in self.inputs.iter().take(CASES).chain(random) {
+            let start = answers.len();
+            answers.resize(start + outputs, 0.0);
+            variation.evaluate(inputs, &mut answers[start..]);
+        }
+        Some(answers)
     }
 
     fn shows(&self, concerned: &Concerned) -> bool {

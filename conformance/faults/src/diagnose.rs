@@ -8,11 +8,12 @@ use super::factor::{self, Scaled};
 use super::fault::Concerned;
 use super::variation::Variation;
 use lightmeter_arithmetic::{Accept, Profile};
-use lightmeter_catalogue::cases::Kind;
+use lightmeter_catalogue::cases::{Kind, Spec};
 use lightmeter_catalogue::select::Member;
-use lightmeter_document::report::{Diagnosis, FailingOutput, Telling};
+use lightmeter_document::report::{Diagnosis, FailingOutput, PartDiagnosis, Telling};
 use lightmeter_judge::diagnose::Answered;
 use lightmeter_judge::telling;
+use std::ops::Range;
 
 /// The largest share of cases that may speak against an explanation: failing cases whose answer it does not allow, and passing cases whose
 /// answer it does not allow. Both are counted relative to the number of failing cases. The first constant counts random cases only and is
@@ -31,8 +32,8 @@ const MOST_CONSTANT: f64 = 4.0;
 const OWN: f64 = 2.0;
 /// The bits that are told by which cases fail, at most.
 const MOST_FORETOLD: f64 = 128.0;
-/// The share of failing cases that lie inside, where the mistake promises something, at least.
-const LEAST: f64 = 0.1;
+/// The share of the wrong numbers that the mistake gives at least: that very number, or one within an interval that tells something.
+const LEAST_GIVEN: f64 = 0.99;
 /// The bits that it takes to say by which factor which parameter is off.
 const FACTOR_BITS: f64 = 24.0;
 /// The fewest failing cases for which two mistakes at once are tried. Fewer cases could be explained by too many different pairs.
@@ -51,25 +52,80 @@ const PAIR_PROBES: usize = 8;
 pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> FormulaDiagnosis {
     let spec = &member.spec;
     let fits = |row: &&Answered<'_>| row.inputs.len() == spec.input_len() && row.values.len() == spec.output_len();
-    let failing: Vec<Answered<'_>> = rows.iter().filter(fits).filter(|row| row.is_wrong).copied().collect();
-    let passing: Vec<Answered<'_>> = rows.iter().filter(fits).filter(|row| !row.is_wrong).copied().collect();
-    let right = Right::new(spec.output_len(), &failing, &passing);
-    let mut trial = Trial { member, profile, failing: &failing, passing: &passing, right, found: vec![] };
+    let rows: Vec<Answered<'_>> = rows.iter().filter(fits).copied().collect();
+    let mut found = diagnose_places(member, &rows, profile, 0..spec.output_len());
+    if found.failing > 0 && found.explanations.is_empty() {
+        (found.parts, found.diagnosis.parts) = by_parts(member, &rows, profile).into_iter().unzip();
+    }
+    found
+}
+
+/// Places of outputs, and what explains the numbers there.
+type ExplainedPlaces = (Range<usize>, Vec<TriedMistake>);
+
+/// What explains the colour, the alpha and each other output by itself, where more than one of them is wrong and one at least is explained.
+fn by_parts(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Vec<(ExplainedPlaces, PartDiagnosis)> {
+    let of_part = |(name, places): (String, Range<usize>)| {
+        let rows: Vec<Answered<'_>> = rows.iter().map(|row| at_places(row, &places)).collect();
+        let found = diagnose_places(member, &rows, profile, places.clone());
+        (found.failing > 0).then(|| ((places, found.explanations), PartDiagnosis::new(name, found.diagnosis)))
+    };
+    let parts: Vec<_> = parts_of(&member.spec).into_iter().filter_map(of_part).collect();
+    let tells = parts.len() > 1 && parts.iter().any(|(_, part)| !part.explanations.is_empty());
+    if tells { parts } else { vec![] }
+}
+
+/// The outputs that are diagnosed by themselves, by name, with their places: each output, and of a colour with an alpha the two.
+fn parts_of(spec: &Spec) -> Vec<(String, Range<usize>)> {
+    let mut parts = vec![];
+    let mut start = 0;
+    for output in spec.outputs {
+        let end = start + output.shape.components();
+        let alpha = end - start == 4 && output.unit == "color";
+        let colors = if alpha { start..end - 1 } else { start..end };
+        parts.push((output.name.to_owned(), colors));
+        if alpha {
+            parts.push((spec.output_name(end - 1), end - 1..end));
+        }
+        start = end;
+    }
+    parts
+}
+
+/// Some places of an answer, which is wrong where one of them is.
+fn at_places<'a>(row: &Answered<'a>, places: &Range<usize>) -> Answered<'a> {
+    let (values, legal) = (&row.values[places.clone()], &row.legal[places.clone()]);
+    let is_wrong = !is_inside(values, legal);
+    Answered { values, legal, reference: &row.reference[places.clone()], is_wrong, ..*row }
+}
+
+/// The same of some places of the outputs, the only ones that the rows have.
+fn diagnose_places(
+    member: &Member,
+    rows: &[Answered<'_>],
+    profile: &Profile,
+    places: Range<usize>,
+) -> FormulaDiagnosis {
+    let failing: Vec<Answered<'_>> = rows.iter().filter(|row| row.is_wrong).copied().collect();
+    let passing: Vec<Answered<'_>> = rows.iter().filter(|row| !row.is_wrong).copied().collect();
+    let right = Right::new(places.len(), &failing, &passing);
+    let is_whole = places.len() == member.spec.output_len();
+    let mut trial = Trial { member, profile, places, failing: &failing, passing: &passing, right, found: vec![] };
     if !failing.is_empty() {
         trial.singles();
         let is_told_by_two = failing.len() >= FEWEST_OF_TWO;
-        if !trial.is_explained() {
+        if !trial.is_explained() && !trial.right.is_constant() {
             trial.parameters();
         }
         if !trial.is_explained() && is_told_by_two {
             trial.pairs();
         }
-        if !trial.is_explained() && is_told_by_two {
+        if !trial.is_explained() && is_told_by_two && !trial.right.is_constant() {
             trial.faults_and_parameters();
         }
     }
     let mut explanations = std::mem::take(&mut trial.found);
-    rank(&mut explanations);
+    rank(&mut explanations, part(MOST_OFF_OF_RANDOM, failing.len()));
     let next = explanations.iter().skip(1).find(|other| {
         let best = &explanations[0];
         !is_equal(best, other) && !best.faults.iter().all(|fault| other.faults.contains(fault))
@@ -82,18 +138,20 @@ pub fn diagnose(member: &Member, rows: &[Answered<'_>], profile: &Profile) -> Fo
     let diagnosis = Diagnosis {
         failing: failing.len() as u64,
         looked_at: failing.len() as u64,
-        in_common: if told.is_empty() { in_common(member, &failing, &passing) } else { vec![] },
-        outputs: trial.outputs(explanations.first()),
+        in_common: if told.is_empty() { in_common(member, &trial.places, &failing, &passing) } else { vec![] },
+        outputs: if is_whole { trial.outputs(explanations.first()) } else { vec![] },
         explanations: told.into_iter().map(|(_, one)| one).collect(),
         telling,
         ..Diagnosis::default()
     };
-    FormulaDiagnosis { failing: failing.len(), passing: passing.len(), explanations, diagnosis }
+    FormulaDiagnosis { failing: failing.len(), passing: passing.len(), explanations, diagnosis, parts: vec![] }
 }
 
 struct Trial<'a> {
     member: &'a Member,
     profile: &'a Profile,
+    /// The outputs that the rows have.
+    places: Range<usize>,
     failing: &'a [Answered<'a>],
     passing: &'a [Answered<'a>],
     right: Right,
@@ -116,7 +174,7 @@ impl Trial<'_> {
         let mut outside = 0;
         self.probes(probes).all(|row| {
             tried.interval(row.inputs, self.profile, &mut legal);
-            outside += usize::from(!is_inside(row.values, &legal));
+            outside += usize::from(!is_inside(row.values, &legal[self.places.clone()]));
             outside <= most
         })
     }
@@ -137,10 +195,14 @@ impl Trial<'_> {
     fn pairs(&mut self) {
         let concerned = concerned(self.member);
         let prior = 2.0 * bits_of(concerned.len());
-        let near: Vec<Near> = self.probes(PAIR_PROBES).filter_map(|row| Near::new(self.member, row)).collect();
+        let near: Vec<Near> =
+            self.probes(PAIR_PROBES).filter_map(|row| Near::new(self.member, row, &self.places)).collect();
         let paired = paired(self.member);
         for (place, first) in paired.iter().enumerate() {
-            for second in &paired[place + 1..] {
+            // One of the two is of the tables: of those that follow from a formula's steps, some two make nearly anything.
+            for second in
+                paired[place + 1..].iter().filter(|second| !(first.fault.is_generated && second.fault.is_generated))
+            {
                 let Some(variation) = Variation::of(self.member, &[*first, *second]) else { continue };
                 let mut far = 0;
                 let is_near = near.iter().all(|row| {
@@ -159,7 +221,9 @@ impl Trial<'_> {
     fn parameters(&mut self) {
         if !matches!(self.member.spec.kind, Kind::Raster(_)) {
             let right = Variation::right(self.member);
-            factor::candidates(&right, self.failing).into_iter().for_each(|scaled| self.try_scaled(&right, scaled));
+            factor::candidates(&right, self.failing, &self.places)
+                .into_iter()
+                .for_each(|scaled| self.try_scaled(&right, scaled));
         }
     }
 
@@ -172,7 +236,7 @@ impl Trial<'_> {
         let member = self.member;
         let variations: Vec<Variation<'_>> =
             paired(member).iter().filter_map(|fault| Variation::of(member, &[*fault])).collect();
-        for (variation, scaled) in factor::nearest(&variations, self.failing) {
+        for (variation, scaled) in factor::nearest(&variations, self.failing, &self.places) {
             self.try_scaled(variation, scaled);
         }
     }
@@ -234,7 +298,7 @@ impl Trial<'_> {
         let mut legal = vec![Accept::ANY; self.member.spec.output_len()];
         let mut allows = |row: &Answered<'_>, one: usize| {
             self.legal([best, next][one], &variations[one], row, &mut legal);
-            is_inside(row.values, &legal)
+            is_inside(row.values, &legal[self.places.clone()])
         };
         let simple = |row: &&Answered<'_>| telling(row.inputs, row.is_random());
         let mut rows: Vec<&Answered<'_>> = self.failing.iter().chain(self.passing).collect();
@@ -266,26 +330,33 @@ impl Trial<'_> {
     ) {
         let Some(mut tally) = self.tally_failing(tried) else { return };
         let Some(consistent) = self.tally_passing(tried, &mut tally) else { return };
-        let Tally { explained, open, by_output, varies, foretold } = tally;
+        let Tally { explained, open, wrong, given, by_output, varies, foretold } = tally;
         let of_output = |place: usize| {
             let is_constant = self.right.constant[place].is_some() && varies[place];
             if is_constant { by_output[place].min(MOST_CONSTANT) } else { by_output[place] }
         };
         let mut evidence = (0..by_output.len()).map(of_output).sum::<f64>();
-        evidence += foretold.bits().min(MOST_FORETOLD) - prior;
+        // Which cases fail follows from answers that are all the same, whatever made them so.
+        let is_all_alike = self.right.constant.iter().all(Option::is_some);
+        evidence += if is_all_alike { 0.0 } else { foretold.bits().min(MOST_FORETOLD) } - prior;
         evidence -= part_of(EXCLUDED, self.failing.len() - explained - open + self.passing.len() - consistent);
-        // A mistake that permits any answer explains nothing by permitting it, so a minimum share of the failing cases must lie inside a
-        // real interval.
-        if share(explained, self.failing.len()) >= LEAST && evidence >= LEAST_EVIDENCE {
+        // A mistake that permits any answer explains nothing by permitting it.
+        if explained > 0 && share(given, wrong) >= LEAST_GIVEN && evidence >= LEAST_EVIDENCE {
             let faults = tried.faults();
             self.found.push(TriedMistake { faults, says, mistake, parameter, explained, open, consistent, evidence });
         }
     }
 
+    /// Room for what is legal and for what is computed, of all outputs.
+    fn room(&self) -> (Vec<Accept>, Vec<f32>) {
+        let outputs = self.member.spec.output_len();
+        (vec![Accept::ANY; outputs], vec![0.0; outputs])
+    }
+
     /// What an explanation says of the failing cases; `None` where it excludes too many.
     fn tally_failing(&self, tried: &impl Wrong) -> Option<Tally> {
-        let outputs = self.member.spec.output_len();
-        let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
+        let outputs = self.places.len();
+        let (mut legal, mut own) = self.room();
         let mut tally = Tally::default();
         let [most, most_of_random] = self.most_off();
         let (mut excluded, mut of_random) = (0, 0);
@@ -294,31 +365,42 @@ impl Trial<'_> {
         for (row, chance) in self.failing.iter().zip(self.right.bits.chunks(outputs)) {
             tried.interval(row.inputs, self.profile, &mut legal);
             tried.evaluate(row.inputs, &mut own);
-            tally.foretold.take(true, is_wrong(&own, row.legal));
+            let (legal, own) = (&legal[self.places.clone()], &own[self.places.clone()]);
+            tally.foretold.take(true, is_wrong(own, row.legal));
             let is_own = |place: usize| {
                 let (a, b) = (row.values[place], own[place]);
                 a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
             };
-            match self.right.fit(row, &legal, &own) {
+            match self.right.fit(row, legal, own) {
                 Fit::Outside => {
                     excluded += 1;
                     of_random += usize::from(row.is_random());
                     if excluded > most || of_random > most_of_random {
                         return None;
                     }
+                    // Guards at a formula's edges differ from renderer to renderer, which two mistakes may not be made up of.
+                    if tried.is_composed() {
+                        tally.wrong += (0..outputs).filter(|&place| !row.is_right(place)).count();
+                    }
                     continue;
                 }
                 // Where the mistake permits nearly any number, it explains one only if it computes exactly that number in f32.
                 Fit::Open if !(0..outputs).all(|place| row.is_right(place) || is_own(place)) => {
                     tally.open += 1;
+                    tally.wrong += (0..outputs).filter(|&place| !row.is_right(place)).count();
                     continue;
                 }
                 Fit::Open | Fit::Inside => tally.explained += 1,
             }
             for (place, chance) in chance.iter().enumerate() {
+                let is_given = is_own(place) || !self.right.is_wide(place, &legal[place]);
+                if !row.is_right(place) {
+                    tally.wrong += 1;
+                    tally.given += usize::from(is_given);
+                }
                 if is_own(place) {
                     tally.by_output[place] += if row.is_right(place) { *chance } else { chance.max(OWN) };
-                } else if !self.right.is_wide(place, &legal[place]) {
+                } else if is_given {
                     tally.by_output[place] += (chance - bits_left(row.values[place], &legal[place])).max(0.0);
                 }
                 tally.varies[place] |= !is_own(place);
@@ -331,8 +413,7 @@ impl Trial<'_> {
     /// have made them fail. Random cases decide: at a formula's edges, a renderer that makes this mistake may guard against special inputs
     /// differently.
     fn tally_passing(&self, tried: &impl Wrong, tally: &mut Tally) -> Option<usize> {
-        let outputs = self.member.spec.output_len();
-        let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0; outputs]);
+        let (mut legal, mut own) = self.room();
         let random = self.passing.iter().filter(|row| row.is_random()).count();
         let (most, most_of_random) = match self.is_of_bits() {
             true => (0, 0),
@@ -342,7 +423,8 @@ impl Trial<'_> {
         for row in self.passing {
             tried.interval(row.inputs, self.profile, &mut legal);
             tried.evaluate(row.inputs, &mut own);
-            let (would_fail, is_contradicted) = (is_wrong(&own, row.legal), !is_inside(row.values, &legal));
+            let (legal, own) = (&legal[self.places.clone()], &own[self.places.clone()]);
+            let (would_fail, is_contradicted) = (is_wrong(own, row.legal), !is_inside(row.values, legal));
             tally.foretold.take(false, would_fail);
             for (place, varies) in tally.varies.iter_mut().enumerate() {
                 *varies |= own[place].to_bits() != row.values[place].to_bits();
@@ -368,6 +450,9 @@ impl Trial<'_> {
 struct Tally {
     explained: usize,
     open: usize,
+    /// Numbers that are wrong, of cases that it does not exclude, and how many of them the mistake gives.
+    wrong: usize,
+    given: usize,
     /// The bits that each output tells.
     by_output: Vec<f64>,
     /// Whether the mistake's own numbers of an output are others than the answers in some case.
@@ -401,10 +486,11 @@ struct Near {
     inputs: Vec<f64>,
     values: Vec<f32>,
     reach: Vec<f64>,
+    places: Range<usize>,
 }
 
 impl Near {
-    fn new(member: &Member, row: &Answered<'_>) -> Option<Self> {
+    fn new(member: &Member, row: &Answered<'_>, places: &Range<usize>) -> Option<Self> {
         if matches!(member.spec.kind, Kind::Raster(_)) {
             return None;
         }
@@ -412,19 +498,20 @@ impl Near {
             let reach = 4096.0 * legal.width() + f64::from(value).abs() / 64.0;
             if reach.is_finite() { reach } else { f64::INFINITY }
         });
-        let reach = reach.collect();
-        Some(Self { inputs: row.inputs.iter().map(|&x| x.into()).collect(), values: row.values.to_vec(), reach })
+        let inputs = row.inputs.iter().map(|&x| x.into()).collect();
+        Some(Self { inputs, values: row.values.to_vec(), reach: reach.collect(), places: places.clone() })
     }
 
     fn allows(&self, variation: &Variation<'_>) -> bool {
         let mut row = self.inputs.clone();
-        let mut out = vec![0.0; self.values.len()];
+        let mut out = vec![0.0; variation.member.spec.output_len()];
         variation.evaluate_row(&mut row, &mut out);
+        let out = &out[self.places.clone()];
         let is_near = |((&value, out), reach): ((&f32, &f64), &f64)| {
             let apart = (f64::from(value) - out).abs();
             apart <= *reach || !apart.is_finite()
         };
-        self.values.iter().zip(&out).zip(&self.reach).all(is_near)
+        self.values.iter().zip(out).zip(&self.reach).all(is_near)
     }
 }
 
@@ -434,6 +521,8 @@ trait Wrong {
     fn faults(&self) -> Vec<&'static str>;
     /// Whether one of them is of rounding alone.
     fn is_rounding(&self) -> bool;
+    /// Whether they are several, and one of them follows from the formula's steps.
+    fn is_composed(&self) -> bool;
     /// What it may legally answer.
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
     /// What it answers in f32.
@@ -447,6 +536,10 @@ impl Wrong for Variation<'_> {
 
     fn is_rounding(&self) -> bool {
         self.faults.iter().any(|fault| fault.is_rounding)
+    }
+
+    fn is_composed(&self) -> bool {
+        self.faults.len() > 1 && self.faults.iter().any(|fault| fault.is_generated)
     }
 
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
@@ -465,6 +558,10 @@ impl Wrong for (&Variation<'_>, &Scaled) {
 
     fn is_rounding(&self) -> bool {
         self.0.is_rounding()
+    }
+
+    fn is_composed(&self) -> bool {
+        self.0.faults.iter().any(|fault| fault.is_generated)
     }
 
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
@@ -530,6 +627,52 @@ mod tests {
     fn two_mistakes_are_told_together() {
         let (found, _) = diagnosis("fog/exp2-opengl", making(&["fog-radial", "red-and-blue-swapped"]));
         assert_eq!(found.explanations[0].faults, ["fog-radial", "red-and-blue-swapped"], "{}", found.diagnosis);
+    }
+
+    #[test]
+    fn what_follows_from_a_step_is_told_in_the_words_of_the_trade() {
+        for (id, name, says) in [
+            (
+                "lighting/blinn",
+                "diffuse-term-without-light-color",
+                "the diffuse term is not multiplied by the light's colour",
+            ),
+            (
+                "lighting/blinn",
+                "highlight-with-light-color-twice",
+                "the highlight is multiplied by the light's colour twice",
+            ),
+            (
+                "lighting/phong",
+                "r-dot-v-of-normal-for-view-vector",
+                "the cosine r·v is computed with the normal in the place of the view vector",
+            ),
+        ] {
+            let fault = Fault::by_name(name).expect(name);
+            assert!(fault.is_generated && fault.says == says, "{}", fault.says);
+            let (found, _) = diagnosis(id, |member, inputs, out| {
+                Variation::new(member, &[fault]).expect("it concerns it").evaluate(inputs, out);
+            });
+            assert_eq!(found.explanations[0].faults, [name], "{}", found.diagnosis);
+        }
+    }
+
+    #[test]
+    fn a_wrong_alpha_hides_no_cause_of_a_wrong_color() {
+        let (found, _) = diagnosis("lighting/blinn", |member, inputs, out| {
+            making(&["specular-times-incidence"])(member, inputs, out);
+            // Nothing that the catalogue knows.
+            out[3] = 0.25 + 0.5 * inputs[0] * inputs[4];
+        });
+        let parts = &found.diagnosis.parts;
+        assert!(found.explanations.is_empty(), "{}", found.diagnosis);
+        assert_eq!(found.diagnosis.mistakes(), ["specular-times-incidence"], "{}", found.diagnosis);
+        let names: Vec<(&str, bool)> = parts.iter().map(|part| (&*part.name, part.explanations.is_empty())).collect();
+        assert_eq!(names, [("color", false), ("color.a", true)], "{}", found.diagnosis);
+        let (found, _) = diagnosis("lighting/blinn", |member, inputs, out| {
+            making(&["specular-times-incidence", "alpha-summed"])(member, inputs, out);
+        });
+        assert_eq!(found.explanations[0].faults, ["specular-times-incidence", "alpha-summed"], "{}", found.diagnosis);
     }
 
     #[test]

@@ -70,6 +70,11 @@ impl Right {
         Self { bits, ranges: (0..outputs).map(range).collect(), constant: (0..outputs).map(constant).collect() }
     }
 
+    /// Whether what is right is the same number in each case, of which any other number is some multiple.
+    pub(super) fn is_constant(&self) -> bool {
+        self.ranges.iter().all(|range| *range == 0.0)
+    }
+
     /// Whether an interval is so wide that it tells nothing of an output.
     pub(super) fn is_wide(&self, place: usize, legal: &Accept) -> bool {
         legal.is_any() || legal.width() > WIDE * self.ranges[place]

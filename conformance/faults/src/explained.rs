@@ -45,8 +45,8 @@ fn explain_failures(failures: &[Failure], groups: &[Group], profile: &Profile) -
         let is_group = |group: &&Group| {
             group.adapter == failure.adapter && group.stage == failure.stage && group.has_case(&failure.id)
         };
-        let mistakes = groups.iter().find(is_group).map_or(&[][..], |group| group.mistakes());
-        explained.push(explained_case(&failure.id, member, &inputs, &failure.output, mistakes, profile));
+        let mistakes = groups.iter().find(is_group).map_or_else(Vec::new, Group::mistakes);
+        explained.push(explained_case(&failure.id, member, &inputs, &failure.output, &mistakes, profile));
     }
     explained
 }

@@ -1,10 +1,11 @@
 //! What explains a renderer's wrong answers, ranked.
 
-use super::catalogue::faults;
+use super::catalogue::place_of;
 use super::factor::Scaled;
 use lightmeter_document::Word;
 use lightmeter_document::report::{Diagnosis, Explanation, Standing, WrongParameter};
 use serde::Serialize;
+use std::ops::Range;
 
 /// What may have been done in a formula's place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -39,6 +40,9 @@ pub struct FormulaDiagnosis {
     pub explanations: Vec<TriedMistake>,
     /// What a report says of it, of these cases alone.
     pub diagnosis: Diagnosis,
+    /// Where nothing explains whole answers: the places of each output that is wrong, and what explains it by itself.
+    #[serde(skip)]
+    pub parts: Vec<(Range<usize>, Vec<TriedMistake>)>,
 }
 
 /// Explanations that are kept.
@@ -51,15 +55,23 @@ pub(super) fn is_equal(best: &TriedMistake, other: &TriedMistake) -> bool {
 }
 
 /// Puts the best first: those with the most evidence, and of equally good ones the simplest, in the order of the catalogue.
-pub(super) fn rank(explanations: &mut Vec<TriedMistake>) {
+///
+/// What makes a difference in so few cases as may be off is no part of the first: an explanation that lacks it alone comes before.
+pub(super) fn rank(explanations: &mut Vec<TriedMistake>, most_off: usize) {
     let kind = |e: &TriedMistake| if e.parameter.is_some() { 3 + e.faults.len() } else { e.faults.len() };
-    let order = |e: &TriedMistake| -> Vec<usize> {
-        e.faults.iter().filter_map(|name| faults().iter().position(|fault| fault.name == *name)).collect()
-    };
+    let order = |e: &TriedMistake| -> Vec<usize> { e.faults.iter().filter_map(|name| place_of(name)).collect() };
     explanations.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let most = explanations.first().map_or(0.0, |best| best.evidence);
     let equal = explanations.partition_point(|e| most - e.evidence <= EQUAL);
     explanations[..equal].sort_by(|a, b| kind(a).cmp(&kind(b)).then_with(|| order(a).cmp(&order(b))));
+    if let Some(best) = explanations.first() {
+        let accounts = |e: &TriedMistake| e.explained + e.open;
+        let simpler = |e: &TriedMistake| e.is_part_of(best) && accounts(e) + most_off >= accounts(best);
+        let simplest = explanations.iter().enumerate().filter(|(_, e)| simpler(e)).min_by_key(|(_, e)| kind(e));
+        if let Some((place, _)) = simplest {
+            explanations[..=place].rotate_right(1);
+        }
+    }
     explanations.truncate(MOST_EXPLANATIONS);
 }
 
@@ -81,6 +93,16 @@ pub(super) fn told(ranked: &[TriedMistake]) -> Vec<(usize, Explanation)> {
 }
 
 impl TriedMistake {
+    /// Whether another one has all that it has, and more.
+    fn is_part_of(&self, other: &Self) -> bool {
+        let has_parameter = self.parameter.is_some();
+        let is_less = self.faults.len() < other.faults.len() || !has_parameter && other.parameter.is_some();
+        is_less
+            && !self.faults.is_empty()
+            && !has_parameter
+            && self.faults.iter().all(|name| other.faults.contains(name))
+    }
+
     fn told(&self, standing: Standing, (says, names): (String, Vec<String>)) -> Explanation {
         Explanation {
             says,

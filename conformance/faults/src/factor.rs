@@ -121,8 +121,8 @@ pub(super) fn parameters(spec: &Spec) -> impl Iterator<Item = (&'static str, Ran
 }
 
 /// Factors of each parameter that would explain the answers best, whether they do or not.
-pub(super) fn candidates(variation: &Variation<'_>, failing: &[Answered<'_>]) -> Vec<Scaled> {
-    let rows = rows(failing, ROWS);
+pub(super) fn candidates(variation: &Variation<'_>, failing: &[Answered<'_>], places: &Range<usize>) -> Vec<Scaled> {
+    let rows = rows(failing, places, ROWS);
     if rows.is_empty() {
         return vec![];
     }
@@ -143,8 +143,9 @@ pub(super) fn candidates(variation: &Variation<'_>, failing: &[Answered<'_>]) ->
 pub(super) fn nearest<'a, 'b>(
     variations: &'b [Variation<'a>],
     failing: &[Answered<'_>],
+    places: &Range<usize>,
 ) -> Vec<(&'b Variation<'a>, Scaled)> {
-    let (few, all) = (rows(failing, FEW_ROWS), rows(failing, ROWS));
+    let (few, all) = (rows(failing, places, FEW_ROWS), rows(failing, places, ROWS));
     if few.is_empty() {
         return vec![];
     }
@@ -175,9 +176,9 @@ fn cheapest<'a, 'b>(
 }
 
 /// So many of the failing cases, evenly spread.
-fn rows(failing: &[Answered<'_>], count: usize) -> Vec<FactorRow> {
+fn rows(failing: &[Answered<'_>], places: &Range<usize>, count: usize) -> Vec<FactorRow> {
     let some = failing.iter().step_by((failing.len() / count).max(1)).take(count);
-    some.filter_map(FactorRow::new).collect()
+    some.filter_map(|row| FactorRow::new(row, places)).collect()
 }
 
 /// An answer with the size of what its error is measured by.
@@ -185,10 +186,12 @@ struct FactorRow {
     inputs: Vec<f64>,
     values: Vec<f64>,
     tolerance: Vec<f64>,
+    /// The outputs that these are of.
+    places: Range<usize>,
 }
 
 impl FactorRow {
-    fn new(row: &Answered<'_>) -> Option<Self> {
+    fn new(row: &Answered<'_>, places: &Range<usize>) -> Option<Self> {
         let tolerance = row.legal.iter().zip(row.values).map(|(legal, &value)| {
             let half = if legal.is_any() { f64::INFINITY } else { legal.width() * 0.5 };
             half.max(F32::ulp(f64::from(value).abs().max(1e-6)))
@@ -196,14 +199,16 @@ impl FactorRow {
         let tolerance: Vec<f64> = tolerance.collect();
         let values: Vec<f64> = row.values.iter().map(|&x| x.into()).collect();
         let is_number = values.iter().all(|x| x.is_finite());
-        is_number.then(|| Self { inputs: row.inputs.iter().map(|&x| x.into()).collect(), values, tolerance })
+        let inputs = row.inputs.iter().map(|&x| x.into()).collect();
+        is_number.then(|| Self { inputs, values, tolerance, places: places.clone() })
     }
 
     /// The residual of each output at a factor, in tolerances.
     fn residuals(&self, variation: &Variation<'_>, scaled: &Scaled, factor: f64, out: &mut Vec<f64>) {
-        let mut outputs = vec![0.0; self.values.len()];
+        let mut outputs = vec![0.0; variation.member.spec.output_len()];
         scaled.scaled(variation, factor, &mut self.inputs.clone(), &mut outputs);
-        for ((value, output), tolerance) in self.values.iter().zip(&outputs).zip(&self.tolerance) {
+        let outputs = &outputs[self.places.clone()];
+        for ((value, output), tolerance) in self.values.iter().zip(outputs).zip(&self.tolerance) {
             let residual = (value - output) / tolerance;
             out.push(if residual.is_finite() { residual } else { 0.0 });
         }

@@ -21,6 +21,8 @@ pub struct Fault {
     pub seen_in: Option<&'static str>,
     /// Whether it computes the same but for its rounding, which leaves too much open to be told beside another mistake.
     pub(super) is_rounding: bool,
+    /// Whether it was made from the steps and inputs of formulas, and stands in no table.
+    pub is_generated: bool,
     /// How it is made, the first way that fits a formula.
     pub(super) ways: &'static [&'static [Step]],
     /// Which of the formulas that a way fits it shows in.
@@ -44,6 +46,8 @@ pub(super) enum Step {
     Naive,
     /// The outputs change.
     After(After),
+    /// Alpha is the sum of all terms as the colours are, of lights and materials whose own is 1.
+    AlphaSummed,
 }
 
 impl Step {
@@ -77,6 +81,9 @@ impl Step {
         let is_raster = matches!(spec.kind, Kind::Raster(_));
         match self {
             Self::Before(before) => before.fits(spec),
+            Self::AlphaSummed => {
+                spec.family() == "lighting" && matches!(spec.outputs, [color] if color.shape.components() == 4)
+            }
             Self::After(after) => after.fits(spec),
             Self::Instead(_) | Self::Test(_) | Self::Naive => self.instead(spec).is_some(),
             // A rasteriser's answers follow from changed inputs alone.
@@ -88,6 +95,11 @@ impl Step {
 }
 
 impl Fault {
+    /// One that follows from the steps and inputs of formulas.
+    pub(super) const fn generated(name: &'static str, says: &'static str, ways: &'static [&'static [Step]]) -> Self {
+        Self { name, says, seen_in: None, is_rounding: false, is_generated: true, ways, only: is_computed }
+    }
+
     /// How it is made in a formula whose steps are these: the first way that fits.
     pub(super) fn way(&self, spec: &Spec, steps: &[Seen]) -> Option<&'static [Step]> {
         // NaN and infinity in blending: of what comes out nothing is promised.
@@ -103,6 +115,11 @@ impl Fault {
         let is_state = matches!(spec.kind, Kind::Blend(_)) && !is_in_a_step(way);
         (!is_state || shows_in_blending(spec, way)).then_some(way)
     }
+}
+
+/// Whether a formula is computed step by step, and neither a rasteriser's nor a blend unit's.
+pub(super) fn is_computed(spec: &Spec) -> bool {
+    matches!(spec.kind, Kind::Arithmetic | Kind::Depth(_))
 }
 
 /// A mistake that concerns a formula, and how it is made there.

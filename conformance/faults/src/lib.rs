@@ -16,6 +16,7 @@ mod explained;
 mod explanation;
 mod factor;
 mod fault;
+mod generated;
 mod group;
 mod look;
 mod mistakes;
@@ -30,8 +31,8 @@ mod table;
 mod touched;
 mod variation;
 
-pub use catalogue::faults;
-pub use concerned::concerning;
+pub use catalogue::{faults, generated};
+pub use concerned::{concerning, listed};
 pub use diagnose::diagnose;
 pub use explained::{explain, shown_mistake, shown_step, typical_course};
 pub use explanation::{FormulaDiagnosis, TriedMistake};

@@ -15,6 +15,7 @@ use lightmeter_document::selftest::{ExplainedNoise, NoiseRecord};
 use lightmeter_judge::diagnose::Answered;
 use rayon::prelude::*;
 use std::fmt;
+use std::ops::Range;
 
 /// What is answered in a formula's place.
 enum Noise<'a> {
@@ -172,15 +173,18 @@ fn explained(bench: &Bench<'_>, values: &[Vec<f32>], options: &SelftestOptions) 
     }
     let found = diagnose(bench.member, &rows, options.profile);
     let right = Right::new(bench.outputs(), &failing, &passing);
-    let given = |best: &TriedMistake| given(bench, best, (&failing, &right), options);
-    found.explanations.first().map(|best| one(best.says.clone(), given(best))).into_iter().collect()
+    let whole = (0..bench.outputs(), found.explanations);
+    let explained = std::iter::once(&whole).chain(&found.parts);
+    let explained = explained.filter_map(|(places, explanations)| Some((places, explanations.first()?)));
+    let given = |(places, best)| given(bench, best, (&failing, &right, places), options);
+    explained.map(|of: (&Range<usize>, &TriedMistake)| one(of.1.says.clone(), given(of))).collect()
 }
 
 /// The part of the wrong numbers that the mistaken formula gives: the very number, or one within an interval that tells something.
 fn given(
     bench: &Bench<'_>,
     best: &TriedMistake,
-    (failing, right): (&[Answered<'_>], &Right),
+    (failing, right, places): (&[Answered<'_>], &Right, &Range<usize>),
     options: &SelftestOptions,
 ) -> f64 {
     let known = concerned(bench.member);
@@ -201,7 +205,7 @@ fn given(
                 variation.interval(row.inputs, options.profile, &mut legal);
             }
         }
-        for k in (0..outputs).filter(|&k| !row.is_right(k)) {
+        for k in places.clone().filter(|&k| !row.is_right(k)) {
             let value = row.values[k];
             let is_own = value.to_bits() == own[k].to_bits() || value.is_nan() && own[k].is_nan();
             wrong += 1;
@@ -225,6 +229,7 @@ mod tests {
         let (seed, draws, stop) = (1, 0, Stop::default());
         let options = SelftestOptions { filter, cases: 256, seed, draws, profile: &WGSL, stop };
         let record = noise(&options, &|_| {});
-        assert!(record.tried > 40 && record.explained.iter().all(|one| one.is_made), "{record:#?}");
+        let false_ones: Vec<_> = record.explained.iter().filter(|one| !one.is_made).collect();
+        assert!(record.tried > 40 && false_ones.is_empty(), "{false_ones:#?}");
     }
 }

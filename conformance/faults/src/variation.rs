@@ -30,6 +30,7 @@ struct Parts {
     blend: Vec<blend::Twist>,
     instead: Vec<&'static Member>,
     after: Vec<super::change::After>,
+    sums_alpha: bool,
 }
 
 impl Parts {
@@ -42,6 +43,7 @@ impl Parts {
                 Step::Blend(twist) => parts.blend.push(*twist),
                 Step::Instead(_) | Step::Test(_) | Step::Naive => parts.instead.extend(step.instead(spec)),
                 Step::After(after) => parts.after.push(*after),
+                Step::AlphaSummed => parts.sums_alpha = true,
             }
         }
         parts
@@ -116,19 +118,34 @@ impl<'a> Variation<'a> {
         for before in &parts.before {
             before.apply(spec, row);
         }
+        self.computed(observer, row, out);
+        if parts.sums_alpha && out.len() == 4 {
+            let (mut white, mut sum) = (row.to_vec(), [R::literal(0.0); 4]);
+            let colors = spec.inputs.iter().filter(|input| input.unit == "color");
+            for place in colors.filter_map(|input| spec.place(input.name)).flatten() {
+                white[place] = R::literal(1.0);
+            }
+            self.computed(None, &white, &mut sum);
+            out[3] = sum[0];
+        }
+        for after in &parts.after {
+            after.apply(spec, row, out);
+        }
+    }
+
+    /// The outputs for inputs that are changed already, before they are changed themselves.
+    fn computed<R: Arithmetic>(&self, observer: Option<&'static dyn Alteration>, row: &[R], out: &mut [R]) {
+        let (spec, parts) = (&self.member.spec, &self.parts);
         let is_blended = !parts.blend.is_empty() && blend::evaluate(spec, &parts.blend, row, out).is_some();
         if !is_blended {
             let zero = Mistaken(R::literal(0.0));
             let (mut inputs, mut outputs) = ([zero; MOST_INPUTS], [zero; MOST_OUTPUTS]);
-            inputs.iter_mut().zip(&*row).for_each(|(to, &x)| *to = Mistaken(x));
+            inputs.iter_mut().zip(row).for_each(|(to, &x)| *to = Mistaken(x));
             let alterations = parts.at.iter().map(|&at| at as &'static dyn Alteration);
             making(observer.into_iter().chain(alterations), || {
                 R::evaluate(self.formula, &inputs[..row.len()], &mut outputs)
             });
             out.iter_mut().zip(outputs).for_each(|(to, x)| *to = x.0);
-        }
-        for after in &parts.after {
-            after.apply(spec, row, out);
         }
     }
 

@@ -54,6 +54,8 @@ pub struct Hello {
     pub special: bool,
     /// Where its code of formulas and scenes stands, which annotations point to.
     pub sources: Vec<DeclaredSource>,
+    /// Where the samples of a pixel lie, from its upper left corner, in pixels. One in the middle is all that is judged so far.
+    pub samples: Option<Vec<[serde_json::Number; 2]>>,
 }
 
 /// Where a renderer's code of formulas or scenes stands.
@@ -257,6 +259,9 @@ fn is_no_value_of(name: &str, value: &serde_json::Value) -> Option<String> {
     if let Some((why, example)) = unread {
         return Some(format!("cannot be read: {why}; expected such as {example}"));
     }
+    if name == "samples" && !value.is_null() && *value != serde_json::json!([[0.5, 0.5]]) {
+        return Some(no_samples(value));
+    }
     let example = match name {
         NAME => "my-renderer",
         "version" => "1.2",
@@ -266,6 +271,18 @@ fn is_no_value_of(name: &str, value: &serde_json::Value) -> Option<String> {
         _ => return None,
     };
     (!value.is_string()).then(|| format!("is no string; expected such as \"{example}\""))
+}
+
+/// What is wrong with places of samples that are not one in the middle of the pixel.
+fn no_samples(value: &serde_json::Value) -> String {
+    let is_in_a_pixel = |place: &f64| (0.0..1.0).contains(place);
+    match serde_json::from_value::<Vec<[f64; 2]>>(value.clone()) {
+        Ok(places) if !places.is_empty() && places.iter().flatten().all(is_in_a_pixel) => {
+            "places samples elsewhere than in the middle of the pixel; so far one sample there is judged, [[0.5, 0.5]]"
+                .into()
+        }
+        _ => "is no list of places in a pixel, from 0 to below 1; expected such as [[0.5, 0.5]]".into(),
+    }
 }
 
 #[cfg(test)]
@@ -310,6 +327,13 @@ mod tests {
             (br#"{"renderer":"r","build":17}"#, "`build` is no string; expected such as \"3f2a91c\""),
             (br#"{"renderer":"r","excludes":"fog"}"#, "`excludes` is no list"),
             (br#"{"renderer":"r","special":"yes"}"#, "expected a boolean"),
+            (br#"{"renderer":"r","samples":4}"#, "`samples` is no list of places in a pixel"),
+            (br#"{"renderer":"r","samples":[[0.5,1.5]]}"#, "from 0 to below 1; expected such as [[0.5, 0.5]]"),
+            (br#"{"renderer":"r","samples":[]}"#, "`samples` is no list of places"),
+            (
+                br#"{"renderer":"r","samples":[[0.375,0.125],[0.875,0.375],[0.125,0.625],[0.625,0.875]]}"#,
+                "`samples` places samples elsewhere than in the middle of the pixel; so far one sample there is judged",
+            ),
             (br#"{"renderer":"r","exclude":["fog"]}"#, "unknown field `exclude`; did you mean `excludes`?"),
             (
                 br#"{"renderer":"r","xyzzy":1}"#,

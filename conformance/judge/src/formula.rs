@@ -328,6 +328,7 @@ fn failure(member: &Member, place: RowPlace, row: &KeptRow, stage: Stage, adapte
         stage: stage.name().into(),
         target: None,
         route: None,
+        sample: None,
         output: member.spec.output_name(k),
         inputs: by_name(member, inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         units: units(member),

@@ -5,6 +5,7 @@ use lightmeter_document::selftest::{
     Clean, Finding, Kill, Mistake, NoiseRecord, Record, Resolution, SceneResolution, family_of,
 };
 use lightmeter_document::thousands;
+use std::collections::HashMap;
 use std::fmt::{Result, Write};
 
 /// The kill matrix by mistake, what went wrong, and the resolution where it was measured.
@@ -14,16 +15,12 @@ use std::fmt::{Result, Write};
 pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], out: &mut impl Write) -> Result {
     let numbers = ["formulas", "caught", "named", "cases", "at most"].map(|heading| (heading, Align::Right));
     let mut table = TextTable::new(&[&[("mistake", Align::Left)], &numbers[..]].concat());
-    for fault in mistakes {
-        let kills: Vec<&Kill> = record.kills.iter().filter(|kill| kill.fault == fault.name).collect();
-        if kills.is_empty() {
-            continue;
-        }
+    for MistakeRow { name, kills, .. } in rows(record, mistakes) {
         let caught = kills.iter().filter(|kill| kill.finding != Finding::Survived).count();
         let named = kills.iter().filter(|kill| kill.finding == Finding::Named).count();
         let (median, most) = smallest(&kills);
         let numbers = [kills.len(), caught, named, median, most].map(|number| number.to_string());
-        table.row(std::iter::once(fault.name.to_string()).chain(numbers));
+        table.row(std::iter::once(name).chain(numbers));
     }
     out.write_str(&table.text(""))?;
     let total = record.kills.len();
@@ -64,6 +61,36 @@ pub fn text(record: &Record, mistakes: &[Mistake], resolutions: &[Resolution], o
         ]);
     }
     if resolutions.is_empty() { Ok(()) } else { write!(out, "\n{}", table.text("")) }
+}
+
+/// A row of a table of mistakes, with where each was made.
+pub(super) struct MistakeRow<'a> {
+    pub(super) name: String,
+    pub(super) says: &'a str,
+    pub(super) seen_in: &'a str,
+    pub(super) kills: Vec<&'a Kill>,
+}
+
+/// The mistakes that were made, a row each. Those that follow from the steps and inputs of formulas are one row together.
+pub(super) fn rows<'a>(record: &'a Record, mistakes: &'a [Mistake]) -> Vec<MistakeRow<'a>> {
+    let mut by_name: HashMap<&str, Vec<&Kill>> = HashMap::new();
+    record.kills.iter().for_each(|kill| by_name.entry(&kill.fault).or_default().push(kill));
+    let (mut rows, mut derived, mut count) = (vec![], vec![], 0);
+    for Mistake { name, says, seen_in, generated } in mistakes {
+        let Some(kills) = by_name.remove(&**name) else { continue };
+        if *generated {
+            derived.extend(kills);
+            count += 1;
+        } else {
+            let seen_in = seen_in.as_deref().unwrap_or_default();
+            rows.push(MistakeRow { name: name.to_string(), says, seen_in, kills });
+        }
+    }
+    if count > 0 {
+        let (name, says) = (format!("{} generated", thousands(count)), "follow from the steps and inputs of formulas");
+        rows.push(MistakeRow { name, says, seen_in: "", kills: derived });
+    }
+    rows
 }
 
 fn of_family<'a>(record: &'a Record, family: &'a str) -> impl Iterator<Item = &'a Clean> {

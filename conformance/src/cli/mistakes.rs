@@ -8,7 +8,7 @@ use lightmeter::cases::Kind;
 use lightmeter::document::Document as _;
 use lightmeter::document::mistakes::{KnownMistake, MistakeOf, MistakesDocument, SCHEMA};
 use lightmeter::faults::scene::{SCENE_FAULTS, SceneFault, looks};
-use lightmeter::faults::{Fault, concerning, faults, look};
+use lightmeter::faults::{Fault, concerning, faults, generated, look};
 use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::report;
@@ -69,7 +69,10 @@ pub(crate) fn document(names: &[String], formulas: &[String]) -> anyhow::Result<
         bail!("no formula or scene matches `{}`: see `lightmeter list`", asked.join(" "));
     }
     let concerned: Vec<Vec<&'static Fault>> = members.par_iter().map(concerning).collect();
-    let selected: Vec<&'static Fault> = faults().iter().copied().filter(|fault| named.selects(fault.name)).collect();
+    // Those that follow from a formula's steps are many: they are told where one is asked for.
+    let derived = if is_about_some { generated() } else { &[] };
+    let all = faults().iter().chain(derived).copied();
+    let selected: Vec<&'static Fault> = all.filter(|fault| named.selects(fault.name)).collect();
     let mut mistakes: Vec<KnownMistake> =
         selected.into_par_iter().map(|fault| known(fault, &members, &concerned)).collect();
     mistakes.retain(|mistake| !mistake.formulas.is_empty());
@@ -85,7 +88,7 @@ pub(crate) fn document(names: &[String], formulas: &[String]) -> anyhow::Result<
 }
 
 pub(crate) fn all_names() -> impl Iterator<Item = &'static str> {
-    faults().iter().map(|fault| fault.name).chain(SCENE_FAULTS.iter().map(|fault| fault.name))
+    faults().iter().chain(generated()).map(|fault| fault.name).chain(SCENE_FAULTS.iter().map(|fault| fault.name))
 }
 
 /// What is said of a name that no mistake has.

@@ -21,7 +21,7 @@ use lightmeter::faults::noise::noise;
 use lightmeter::faults::scene::calibrate::calibrate as measure;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
-use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults};
+use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults, generated};
 use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::report::html;
@@ -31,6 +31,7 @@ use lightmeter::report::table::{Align, TextTable};
 use lightmeter::scene::select::SIZE_AMONG_ALL;
 use lightmeter::select::catalogue;
 use lightmeter_scene::target::TargetFormat;
+use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -134,7 +135,7 @@ impl Selftest {
             rows: tested.unit.clone().unwrap_or_default(),
             kills: tested.formulas.as_ref().map(|record| record.kills.clone()),
             clean: tested.formulas.as_ref().map(|record| record.clean.clone()),
-            mistakes: if tested.formulas.is_some() { mistakes() } else { vec![] },
+            mistakes: tested.formulas.as_ref().map_or_else(Vec::new, mistakes),
             named_from: (!tested.resolutions.is_empty()).then_some(NAMED_FROM),
             calibration: tested.formulas.is_some().then(|| tested.resolutions.clone()),
             noise: tested.noise.clone(),
@@ -234,7 +235,7 @@ impl Tested {
         let mut parts = vec![];
         if let Some(record) = &self.formulas {
             let mut text = String::new();
-            report::text(record, &mistakes(), &self.resolutions, &mut text)?;
+            report::text(record, &mistakes(record), &self.resolutions, &mut text)?;
             parts.push(text);
         }
         if let Some(scenes) = &self.scenes {
@@ -262,14 +263,17 @@ fn say(what: &str) {
 /// From where on the suite names errors.
 const NAMED_FROM: NamedFrom = NamedFrom { cases: CASES, least_z: LEAST_Z, least_share: LEAST_SHARE };
 
-/// The mistakes that the suite knows.
-fn mistakes() -> Vec<Mistake> {
+/// The mistakes that were tried: all of the tables, and of those that follow from a formula's steps what concerned one.
+fn mistakes(record: &Record) -> Vec<Mistake> {
     let mistake = |fault: &&Fault| Mistake {
         name: fault.name.into(),
         says: fault.says.into(),
         seen_in: fault.seen_in.map(Into::into),
+        generated: fault.is_generated,
     };
-    faults().iter().map(mistake).collect()
+    let tried: HashSet<&str> = record.kills.iter().map(|kill| &*kill.fault).collect();
+    let derived = generated().iter().filter(|fault| tried.contains(fault.name));
+    faults().iter().chain(derived).map(mistake).collect()
 }
 
 fn word(finding: UnitFinding) -> &'static str {

@@ -10,7 +10,7 @@ use lightmeter::bench::OwnShader as Beside;
 use lightmeter::cases::{Kind, Spec};
 use lightmeter::device::Code;
 use lightmeter::document::hash;
-use lightmeter::document::report::{BoundVariable, HeldInput, JudgedAs, MistakePlace, Report, ShaderUse};
+use lightmeter::document::report::{BoundVariable, Group, HeldInput, JudgedAs, MistakePlace, Report, ShaderUse};
 use lightmeter::faults::{Fault, Touched};
 use lightmeter::filter::Filter;
 use lightmeter::options::{Adapted, Constant};
@@ -486,7 +486,7 @@ impl OwnShader {
             let id = &adapted.id;
             let named = report.groups.iter().filter(|group| group.id == *id).find(|group| !group.mistakes().is_empty());
             let member = catalogue.iter().find(|member| member.spec.id == *id);
-            let faults = named.into_iter().flat_map(|group| group.mistakes()).filter_map(|name| Fault::by_name(name));
+            let faults = named.into_iter().flat_map(Group::mistakes).filter_map(|name| Fault::by_name(&name));
             let mistakes = member.into_iter().zip(std::iter::repeat(faults)).flat_map(|(member, faults)| {
                 faults.filter_map(|fault| line_of(&adapted.text, fault, member, &adapted.variables))
             });

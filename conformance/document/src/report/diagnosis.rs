@@ -34,6 +34,10 @@ pub struct Diagnosis {
     /// accounts for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outputs: Vec<FailingOutput>,
+    /// Where nothing explains whole answers: what explains each output that is wrong by itself, a colour and its alpha apart. Empty where that
+    /// explains nothing either.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<PartDiagnosis>,
     /// Of the other formulas of the group that fail and were diagnosed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub others: Option<OtherFormulas>,
@@ -134,6 +138,45 @@ pub struct FailingOutput {
     pub explained: u64,
 }
 
+/// What explains one output by itself: a colour, its alpha, a factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PartDiagnosis {
+    /// The output: `color`, `color.a`.
+    pub name: Word,
+    /// How many of those that were looked at are wrong there.
+    pub failing: u64,
+    /// The best first, then others. Empty where nothing explains it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub explanations: Vec<Explanation>,
+    /// What those that are wrong there have in common, where nothing explains it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub in_common: Vec<String>,
+}
+
+impl PartDiagnosis {
+    /// Of an output, by the diagnosis of its numbers alone.
+    #[must_use]
+    pub fn new(name: String, Diagnosis { failing, explanations, in_common, .. }: Diagnosis) -> Self {
+        Self { name: name.into(), failing, explanations, in_common }
+    }
+}
+
+impl Display for PartDiagnosis {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { name, failing, explanations, in_common } = self;
+        let failing = thousands(*failing);
+        if let Some(best) = explanations.first() {
+            let explained = thousands(best.explained);
+            write!(f, "{explained} of {failing} wrong values of {name} are explained by: {}", best.told())?;
+            let equal = explanations.iter().filter(|one| one.standing == Standing::Equal).take(MOST_EQUAL);
+            equal.into_iter().try_for_each(|one| write!(f, "; or just as well by: {}", one.told()))
+        } else {
+            write!(f, "nothing in the catalogue explains the {failing} wrong values of {name}")?;
+            if in_common.is_empty() { Ok(()) } else { write!(f, ": {}", in_common.join(", ")) }
+        }
+    }
+}
+
 /// Other formulas of a group that fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct OtherFormulas {
@@ -147,7 +190,11 @@ impl Diagnosis {
     /// What the first explanation says, and its mistakes' names.
     #[must_use]
     pub fn cause(&self) -> Option<String> {
-        let best = self.explanations.first()?;
+        let Some(best) = self.explanations.first() else {
+            let told = |part: &PartDiagnosis| Some(format!("{}: {}", part.name, part.explanations.first()?.told()));
+            let told: Vec<String> = self.parts.iter().filter_map(told).collect();
+            return (!told.is_empty()).then(|| told.join(", and "));
+        };
         Some(if self.counts == Counted::Pixels { self.alike() } else { best.told() })
     }
 
@@ -157,10 +204,11 @@ impl Diagnosis {
         alike.map(Explanation::told).collect::<Vec<_>>().join(", or ")
     }
 
-    /// The mistakes of the first explanation.
+    /// The mistakes of the first explanation, or of the first one of each part.
     #[must_use]
-    pub fn mistakes(&self) -> &[Word] {
-        self.explanations.first().map_or(&[], |first| &first.mistakes)
+    pub fn mistakes(&self) -> Vec<Word> {
+        let of_parts = self.parts.iter().filter_map(|part| part.explanations.first());
+        self.explanations.first().into_iter().chain(of_parts).flat_map(|best| best.mistakes.iter().cloned()).collect()
     }
 
     /// That nothing explains them, and what they have in common.
@@ -222,6 +270,11 @@ impl Display for Diagnosis {
         }
         let of_components = self.counts == Counted::Components;
         match self.explanations.first() {
+            None if !self.parts.is_empty() => {
+                for (place, part) in self.parts.iter().enumerate() {
+                    write!(f, "{}{part}", if place == 0 { "" } else { "; " })?;
+                }
+            }
             None => f.write_str(&self.unexplained())?,
             Some(best) => {
                 self.explained(best, f)?;

@@ -21,6 +21,9 @@ pub struct Failure {
     /// How the state reached the blend unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub route: Option<Word>,
+    /// Which sample of its pixel it is, from 0, where pixels have more than one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample: Option<u32>,
     /// The scalar output's name.
     pub output: String,
     /// The inputs by name.
@@ -70,6 +73,7 @@ impl Failure {
             stage: stage.into(),
             target: None,
             route: None,
+            sample: None,
             output: String::new(),
             inputs: serde_json::Map::new(),
             units: BTreeMap::new(),

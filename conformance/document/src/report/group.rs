@@ -125,8 +125,8 @@ impl Group {
 
     /// The mistakes that explain its failures together.
     #[must_use]
-    pub fn mistakes(&self) -> &[Word] {
-        self.diagnosis.as_ref().map_or(&[], Diagnosis::mistakes)
+    pub fn mistakes(&self) -> Vec<Word> {
+        self.diagnosis.as_ref().map_or_else(Vec::new, Diagnosis::mistakes)
     }
 
     /// What is known of why it fails, each in a sentence: what explains its failures, and what is wrong with the whole.

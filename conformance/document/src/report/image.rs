@@ -77,6 +77,9 @@ pub struct PixelUse {
     pub x: usize,
     /// From the top.
     pub y: usize,
+    /// Which sample of the pixel, from 0, where pixels have more than one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample: Option<u32>,
     /// The f64 reference: red, green, blue, alpha.
     pub reference: [Number; 4],
     /// The least legal values.

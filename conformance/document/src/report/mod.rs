@@ -12,7 +12,8 @@ mod stability;
 
 pub use blend::{BlendPromise, BlendState, SpecialUse, StoreUse, Tiers};
 pub use diagnosis::{
-    Counted, Diagnosis, Explanation, FailingOutput, OtherFormulas, Standing, Telling, ToldApart, WrongParameter,
+    Counted, Diagnosis, Explanation, FailingOutput, OtherFormulas, PartDiagnosis, Standing, Telling, ToldApart,
+    WrongParameter,
 };
 pub use failure::Failure;
 pub use group::{Group, Totals, WorstAnswer};

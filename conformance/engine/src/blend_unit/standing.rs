@@ -507,6 +507,7 @@ fn failure(members: &[&Member], id: String, kept: KeptPixel, target: TargetForma
         stage: stage(subject).into(),
         target: Some(target.name().into()),
         route: Some(route.name().into()),
+        sample: None,
         output: format!("color.{}", ["r", "g", "b", "a"][k]),
         inputs: by_name(member, &inputs, |x| serde_json::to_value(Number(x.into())).unwrap_or_default()),
         units: units(member),

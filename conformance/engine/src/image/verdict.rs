@@ -285,6 +285,7 @@ impl<'a> JudgedScene<'a> {
         told.map(|pixel| PixelUse {
             x: pixel % image.width,
             y: pixel / image.width,
+            sample: None,
             reference: self.reference.pixels[pixel].map(short),
             low: expected[pixel].low.map(short),
             high: expected[pixel].high.map(short),
@@ -356,6 +357,7 @@ impl<'a> JudgedScene<'a> {
             stage: stage(drawn.picture).into(),
             target: Some(self.frame.target.format.name().into()),
             route: None,
+            sample: None,
             output: ["r", "g", "b", "a"][k].into(),
             inputs,
             units: BTreeMap::new(),

@@ -182,6 +182,7 @@ pub(super) fn failure(outcome: &ProbeResult, results: &Results, subject: &Subjec
         stage: outcome.stage.clone(),
         target: None,
         route: None,
+        sample: None,
         output: probe.what.into(),
         inputs: named(&|bits| serde_json::to_value(Number(probe.operand(bits))).unwrap_or_default()),
         units: BTreeMap::new(),

@@ -32,6 +32,7 @@ pub(super) fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> O
         | F::PowerOfAtLeast(_)
         | F::PowerOfAtMostOne
         | F::NoneWithoutExponent
+        | F::PowerUnguarded
         | F::EnergyConserving
         | F::NormalisedPhong => power(form, taken),
         F::Gated | F::GatedBelow | F::GateTurned | F::TimesIncidence | F::HalfLambert { .. } => incident(form, taken),
@@ -127,6 +128,10 @@ fn power<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::NoneWithoutExponent => {
             let zero = R::literal(0.0);
             R::if_ge(zero, exponent, || zero, || cosine.lobe(exponent))
+        }
+        Form::PowerUnguarded => {
+            // The root of what is below 0 is no number either.
+            R::if_ge(cosine, R::literal(0.0), || cosine.lobe(exponent), || cosine.sqrt())
         }
         Form::PowerOfAtLeast(digits) => cosine.max(R::literal(10.0_f64.powi(-i32::from(digits)))).pow(exponent),
         _ => {

@@ -31,6 +31,8 @@ pub(in super::super) enum Form {
     PowerOfAtMostOne,
     /// 0 of an exponent of 0.
     NoneWithoutExponent,
+    /// cosine^exponent, of a cosine below 0 too, where it has no value.
+    PowerUnguarded,
     /// The power times (exponent + 8)/8π.
     EnergyConserving,
     /// The power times (exponent + 2)/2π.
@@ -197,6 +199,7 @@ impl Form {
             | Self::PowerOfAtLeast(_)
             | Self::PowerOfAtMostOne
             | Self::NoneWithoutExponent
+            | Self::PowerUnguarded
             | Self::EnergyConserving
             | Self::NormalisedPhong => &[&["cosine", "exponent"], &["a", "b", "exponent"]],
             Self::Gated | Self::GatedBelow | Self::GateTurned | Self::TimesIncidence | Self::HalfLambert { .. } => {

@@ -152,6 +152,13 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[form("FS", Form::LobeOfBothSides)]],
     )
     .only(|spec| spec.id != "lighting/cosine-power-unguarded"),
+    fault(
+        "power-of-a-negative-cosine",
+        "the highlight is a power of a cosine that may be below 0, which has no value there",
+        &[&[form("FS", Form::PowerUnguarded)]],
+    )
+    .only(|spec| spec.id != "lighting/cosine-power-unguarded")
+    .seen_in("pow(dot(n, h), shininess) without a max"),
     fault("schlick-power", "the highlight's power is Schlick's approximation", &[&[form("FS", Form::SchlickPower)]])
         .seen_in("shaders that spare a pow"),
     fault(

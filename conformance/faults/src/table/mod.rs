@@ -45,7 +45,7 @@ pub(super) fn all() -> impl Iterator<Item = &'static Fault> {
 type Ways = &'static [&'static [Step]];
 
 const fn fault(name: &'static str, says: &'static str, ways: Ways) -> Fault {
-    Fault { name, says, seen_in: None, is_rounding: false, ways, only: everywhere }
+    Fault { name, says, seen_in: None, is_rounding: false, is_generated: false, ways, only: everywhere }
 }
 
 impl Fault {

@@ -1,8 +1,8 @@
 //! Mistakes in how a colour is given out, whatever it is of.
 
 use super::super::change::After as Out;
-use super::super::fault::Fault;
 use super::super::fault::Step::After;
+use super::super::fault::{Fault, Step};
 use super::super::op::Op;
 use super::{colors, fault, input, where_colors_are_drawn};
 use lightmeter_catalogue::cases::{Kind, Spec};
@@ -60,6 +60,12 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[colors(Op::Component(3, &Op::Clamp))]],
     )
     .only(where_alpha_goes_beyond),
+    fault("alpha-zero", "alpha is 0", &[&[colors(Op::Component(3, &Op::Set(0.0)))]]).only(where_colors_are_drawn),
+    fault("alpha-srgb-encoded", "alpha is sRGB-encoded", &[&[colors(Op::Component(3, &Op::Encode))]])
+        .only(where_alpha_varies),
+    fault("alpha-summed", "alpha is the sum of all terms, as the colours are", &[&[Step::AlphaSummed]]),
+    fault("alpha-of-the-texture", "alpha is the texture's", &[&[After(Out::Take("color", "texel"))]]),
+    fault("alpha-of-the-color", "alpha is the colour's alone", &[&[After(Out::Take("color", "color"))]]),
     fault(
         "lights-limited",
         "the lights' colours are limited to 1",

@@ -1,6 +1,6 @@
 //! The page on the self-test, made from the JSON of `lightmeter selftest`: the kill matrix, and the suite's resolution.
 
-use crate::selftest::{percent, smallest};
+use crate::selftest::{MistakeRow, percent, rows, smallest};
 use lightmeter_document::selftest::{
     Clean, Finding, Kill, Mistake, NamedFrom, OffBy, Record, Resolution, SceneRecord, SceneResolution,
     SelftestDocument, UnitFinding, UnitRow, family_of,
@@ -157,12 +157,8 @@ fn matrix(SelftestRun { record, mistakes, .. }: &SelftestRun, out: &mut impl Wri
         .collect();
     writeln!(out, "| mistake | what it does | {} | cases | most | seen in |", families.join(" | "))?;
     writeln!(out, "|---|---|{}--:|--:|---|", "--:|".repeat(families.len()))?;
-    for fault in mistakes {
-        let kills: Vec<&Kill> = record.kills.iter().filter(|kill| kill.fault == fault.name).collect();
-        if kills.is_empty() {
-            continue;
-        }
-        write!(out, "| {} | {} |", fault.name, cell(&fault.says))?;
+    for MistakeRow { name, says, seen_in, kills } in rows(record, mistakes) {
+        write!(out, "| {name} | {} |", cell(says))?;
         for family in &families {
             let of: Vec<&&Kill> = kills.iter().filter(|kill| family_of(&kill.formula) == *family).collect();
             let named = of.iter().filter(|kill| kill.finding == Finding::Named).count();
@@ -173,7 +169,7 @@ fn matrix(SelftestRun { record, mistakes, .. }: &SelftestRun, out: &mut impl Wri
             }
         }
         let (median, most) = smallest(&kills);
-        writeln!(out, " {median} | {most} | {} |", fault.seen_in.as_deref().unwrap_or_default())?;
+        writeln!(out, " {median} | {most} | {} |", seen_in)?;
     }
     let missed: Vec<&Kill> = record.kills.iter().filter(|kill| kill.finding != Finding::Named).collect();
     if !missed.is_empty() {

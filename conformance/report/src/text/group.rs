@@ -144,7 +144,7 @@ pub(crate) fn asked(group: &Group, failures: &[&Failure], style: Style, out: &mu
 /// The commands that explain a failing case of a renderer, and ask for it once more.
 fn commands(failure: &Failure, group: &Group, out: &mut impl Write) -> Result {
     let target = failure.blended_on().map(|target| format!(" --target {target}")).unwrap_or_default();
-    let mistake = match group.mistakes() {
+    let mistake = match &group.mistakes()[..] {
         [one] => format!(" --mistake {one}"),
         _ => String::new(),
     };

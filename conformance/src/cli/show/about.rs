@@ -6,7 +6,7 @@ use anyhow::bail;
 use lightmeter::cases::blend::{COMMON, aliases, written_state};
 use lightmeter::cases::{DRAWN, Kind, Spec, boundary_names};
 use lightmeter::dialects::DIALECTS;
-use lightmeter::faults::concerning;
+use lightmeter::faults::{Fault, concerning};
 use lightmeter::filter::Filter;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::report;
@@ -177,10 +177,7 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
             writeln!(text, "  commonly confused with {other}, {told}")?;
         }
     }
-    let mistakes: Vec<&str> = concerning(member).iter().map(|fault| fault.name).collect();
-    if !mistakes.is_empty() {
-        writeln!(text, "mistakes that are known by name\n  {}", mistakes.join(", "))?;
-    }
+    text += &named_mistakes(member)?;
     if !spec.function.is_empty() {
         writeln!(
             text,
@@ -195,6 +192,26 @@ fn formula(name: &str, member: &Member) -> anyhow::Result<String> {
         writeln!(text, "\nlightmeter show {} --wgsl", spec.id)?;
     }
     writeln!(text, "lightmeter show {}/{case}\nlightmeter run {}", spec.id, spec.id)?;
+    Ok(text)
+}
+
+/// The mistakes that are known by name in a formula.
+fn named_mistakes(member: &Member) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    let (derived, mistakes): (Vec<&Fault>, Vec<&Fault>) =
+        concerning(member).into_iter().partition(|fault| fault.is_generated);
+    if !mistakes.is_empty() {
+        let names: Vec<&str> = mistakes.iter().map(|fault| fault.name).collect();
+        writeln!(text, "mistakes that are known by name\n  {}", names.join(", "))?;
+    }
+    if !derived.is_empty() {
+        writeln!(
+            text,
+            "  {} more follow from its steps: lightmeter mistakes --formula {}",
+            derived.len(),
+            member.spec.id
+        )?;
+    }
     Ok(text)
 }
 
