@@ -42,11 +42,23 @@ def report(bug: dict[str, Any], copy: Path) -> dict[str, Any]:
 def explanations(result: dict[str, Any]) -> list[str]:
     """What is said of each formula, once where its stages agree."""
     said = {}
-    for group in result.get("groups") or result["formulas"]:
-        words = group.get("explanation") or group.get("diagnosis") or group.get("problem")
+    for group in result["groups"]:
+        words = sentence(group.get("diagnosis") or {}) or "; ".join(one["says"] for one in group.get("problems", []))
         if words:
             said[f"{group['id']}: {words}"] = None
     return list(said)
+
+
+def sentence(diagnosis: dict[str, Any]) -> str:
+    """What the first explanation says, of each output by itself where there is none of whole answers."""
+    if best := next(iter(diagnosis.get("explanations", [])), None):
+        names = " and ".join(best.get("mistakes", []))
+        told = f"{best['explained']} of {diagnosis['looked_at']} failing cases are explained by: {best['says']}"
+        return f"{told} ({names})" if names else told
+    if parts := diagnosis.get("parts", []):
+        return "; ".join(f"{part['name']}: {sentence({**part, 'looked_at': part['failing']})}" for part in parts)
+    common = ", ".join(diagnosis.get("in_common", []))
+    return f"nothing in the catalogue explains the failing cases{': ' if common else ''}{common}" if diagnosis else ""
 
 
 def main() -> None:

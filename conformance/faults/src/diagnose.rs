@@ -32,8 +32,12 @@ const MOST_CONSTANT: f64 = 4.0;
 const OWN: f64 = 2.0;
 /// The bits that are told by which cases fail, at most.
 const MOST_FORETOLD: f64 = 128.0;
-/// The share of the wrong numbers that the mistake gives at least: that very number, or one within an interval that tells something.
-const LEAST_GIVEN: f64 = 0.99;
+/// The share of the wrong numbers that a mistake gives at least: that very number, or one within an interval that tells something. Of the tables'
+/// mistakes some leave much open, as a power of what is greater than 1 does. Those that follow from a formula's steps are many, so more is asked of
+/// them, and nearly all of two mistakes of which one is such.
+const LEAST_GIVEN: f64 = 0.1;
+const LEAST_GIVEN_BY_GENERATED: f64 = 0.9;
+const LEAST_GIVEN_BY_COMPOSED: f64 = 0.99;
 /// The bits that it takes to say by which factor which parameter is off.
 const FACTOR_BITS: f64 = 24.0;
 /// The fewest failing cases for which two mistakes at once are tried. Fewer cases could be explained by too many different pairs.
@@ -341,7 +345,12 @@ impl Trial<'_> {
         evidence += if is_all_alike { 0.0 } else { foretold.bits().min(MOST_FORETOLD) } - prior;
         evidence -= part_of(EXCLUDED, self.failing.len() - explained - open + self.passing.len() - consistent);
         // A mistake that permits any answer explains nothing by permitting it.
-        if explained > 0 && share(given, wrong) >= LEAST_GIVEN && evidence >= LEAST_EVIDENCE {
+        let least = match (tried.is_generated(), tried.is_composed()) {
+            (false, _) => LEAST_GIVEN,
+            (true, false) => LEAST_GIVEN_BY_GENERATED,
+            (true, true) => LEAST_GIVEN_BY_COMPOSED,
+        };
+        if explained > 0 && share(given, wrong) >= least && evidence >= LEAST_EVIDENCE {
             let faults = tried.faults();
             self.found.push(TriedMistake { faults, says, mistake, parameter, explained, open, consistent, evidence });
         }
@@ -521,7 +530,9 @@ trait Wrong {
     fn faults(&self) -> Vec<&'static str>;
     /// Whether one of them is of rounding alone.
     fn is_rounding(&self) -> bool;
-    /// Whether they are several, and one of them follows from the formula's steps.
+    /// Whether one of them follows from the formula's steps.
+    fn is_generated(&self) -> bool;
+    /// Whether such a one stands beside something else.
     fn is_composed(&self) -> bool;
     /// What it may legally answer.
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]);
@@ -538,8 +549,12 @@ impl Wrong for Variation<'_> {
         self.faults.iter().any(|fault| fault.is_rounding)
     }
 
+    fn is_generated(&self) -> bool {
+        self.faults.iter().any(|fault| fault.is_generated)
+    }
+
     fn is_composed(&self) -> bool {
-        self.faults.len() > 1 && self.faults.iter().any(|fault| fault.is_generated)
+        self.faults.len() > 1 && self.is_generated()
     }
 
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
@@ -560,8 +575,12 @@ impl Wrong for (&Variation<'_>, &Scaled) {
         self.0.is_rounding()
     }
 
+    fn is_generated(&self) -> bool {
+        self.0.is_generated()
+    }
+
     fn is_composed(&self) -> bool {
-        self.0.faults.iter().any(|fault| fault.is_generated)
+        self.is_generated()
     }
 
     fn interval(&self, inputs: &[f32], profile: &Profile, out: &mut [Accept]) {
