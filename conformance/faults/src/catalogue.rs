@@ -18,7 +18,7 @@ pub fn generated() -> &'static [&'static Fault] {
     super::generated::all()
 }
 
-/// The place of each mistake in the order in which equally good explanations are told.
+/// The place of a mistake in the list of all. Of explanations that are equally good, the one that stands first there is reported first.
 pub(super) fn place_of(name: &str) -> Option<usize> {
     static PLACES: LazyLock<HashMap<&'static str, usize>> =
         LazyLock::new(|| faults().iter().chain(generated()).map(|fault| fault.name).zip(0..).collect());

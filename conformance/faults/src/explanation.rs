@@ -138,3 +138,26 @@ fn together(best: &TriedMistake, ranked: &[TriedMistake]) -> (String, Vec<String
     let which = format!("{} (nothing tells which)", names.join(" or "));
     (format!("{mistake}{}", scaled.says_of(&which)), names)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tried(faults: &[&'static str], explained: usize, evidence: f64) -> TriedMistake {
+        let (says, mistake, parameter) = (faults.join(", and "), None, None);
+        let faults = faults.to_vec();
+        TriedMistake { faults, says, mistake, parameter, explained, open: 0, consistent: 0, evidence }
+    }
+
+    #[test]
+    fn a_mistake_that_hardly_matters_is_no_part_of_the_first_explanation() {
+        let first = |alone: usize, most_off: usize| {
+            let mut explanations =
+                vec![tried(&["fog-radial"], alone, 900.0), tried(&["fog-radial", "fog-twice"], 1000, 1900.0)];
+            rank(&mut explanations, most_off);
+            explanations[0].faults.clone()
+        };
+        assert_eq!(first(990, 15), ["fog-radial"]);
+        assert_eq!(first(980, 15), ["fog-radial", "fog-twice"]);
+    }
+}

@@ -29,6 +29,7 @@ pub mod selftest;
 mod steps;
 mod table;
 mod touched;
+mod trial;
 mod variation;
 
 pub use catalogue::{faults, generated};

@@ -123,7 +123,7 @@ impl Made {
         made.into_iter().map(at).for_each(|(name, says, step)| self.take(name, says, step));
     }
 
-    /// Those of a formula's inputs: one in the place of another of its kind, and the whole times one.
+    /// Makes the mistakes of a formula's inputs: one input replaces another of its shape and unit, two are exchanged, or the colour is multiplied by one.
     fn of_inputs(&mut self, spec: &Spec) {
         let known = spec.inputs.iter().map(|input| (input, words::operand("", input.name)));
         let known: Vec<_> = known.collect();

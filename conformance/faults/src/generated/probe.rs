@@ -184,6 +184,10 @@ mod tests {
         for name in ["ambient", "diffuse", "specular"] {
             assert!(operand("CF", name).is_term() && !operand("CF", name).is_factor(), "{name} of CF");
         }
+        // An exponent of 0 changes nothing when it is doubled, which makes it no term.
+        let cutoff = formulas().iter().find(|member| member.spec.id == "attenuation/spot-cutoff").expect("it is one");
+        let mut given = probed(cutoff).into_iter().flat_map(|probed| probed.operands);
+        assert!(!given.any(|operand| operand.name == "exponent" && (operand.is_term() || operand.is_factor())));
         assert!(!operand("CA", "atten").is_read && !operand("FS", "exponent").is_factor());
         assert!(!operand("l·n", "n").is_factor(), "a product of vectors is no multiple number by number");
     }
