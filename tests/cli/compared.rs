@@ -109,6 +109,53 @@ fn a_known_failure_is_expected_on_an_adapter_and_told_when_it_passes() {
 }
 
 #[test]
+fn a_known_mistake_excuses_what_it_gives_and_no_other_mistake() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
+    let attenuated = |text: &str| {
+        let right = "return lighting_lit(light, material, at, highlight, lighting_attenuation(falloff, position, p));";
+        let wrong = "let atten = lighting_attenuation(falloff, position, p);\n\
+            let ambient = lighting_ambient(light.ambient, material.ambient);\n\
+            let diffuse = light.diffuse * material.diffuse * lighting_incidence(at.l, at.n);\n\
+            let specular = light.specular * material.specular * highlight;\n\
+            return vec4f((ambient + diffuse + specular) * atten, 1.0);";
+        let place = text.find("fn lighting_point_blinn(").expect("the function");
+        text[..place].to_owned() + &text[place..].replacen(right, wrong, 1)
+    };
+    let one = edited("known-mistake", "lighting.wgsl", attenuated);
+    let two = edited("known-mistake-and-another", "lighting.wgsl", |text| {
+        let text = attenuated(text);
+        let place = text.find("fn lighting_point_blinn(").expect("the function");
+        let right = "lighting_highlight_blinn(at.n, at.l, at.v, material.shininess)";
+        text[..place].to_owned()
+            + &text[place..].replacen(right, "pow(max(dot(at.n, 0.5 * (at.l + at.v)), 0.0), material.shininess)", 1)
+    });
+    let expected = file("known-mistake.toml");
+    let of = |shaders: &PathBuf, mistake: &str| {
+        let entry =
+            format!("[[expected]]\nid = \"lighting/point-blinn\"\nreason = \"as drawn\"\nmistake = {mistake}\n");
+        let other = "[[expected]]\nid = \"fog\"\nreason = \"r\"\nrenderer = \"three.js\"\n";
+        std::fs::write(&expected, entry + other).expect("it can be written");
+        let [path, shaders] = [&expected, shaders].map(|path| path.to_str().expect("UTF-8"));
+        run(&["lighting/point-blinn"], &["--adapter", "lavapipe", "--shaders", shaders, "--expect", path])
+    };
+    let known = "\"ambient-attenuated\"";
+    let (status, said, _) = of(&one, known);
+    assert!(status == 0 && said.contains("fails as expected"), "{said}");
+    assert!(said.contains("1 expectation is of another renderer or version than this: `fog`"), "{said}");
+    // Another mistake beside it fails, and both together are excused where both are known.
+    let (status, said, _) = of(&two, known);
+    assert!(status == 1 && said.contains("fails as expected") && said.contains("half-vector-as-mean"), "{said}");
+    let (status, said, _) = of(&two, "[\"ambient-attenuated\", \"half-vector-as-mean\"]");
+    assert!(status == 0, "{said}");
+    let (status, said, _) = of(&one, "\"half-vector-as-mean\"");
+    assert!(status == 1 && said.contains("FAILS BY NO SUCH MISTAKE"), "{said}");
+    let (status, _, said) = of(&one, "\"ambient-atenuated\"");
+    assert!(status == 2 && said.contains("did you mean `ambient-attenuated`"), "{said}");
+}
+
+#[test]
 fn results_are_the_same_however_often_they_are_asked() {
     if crate::needs::lacks_lavapipe() {
         return;

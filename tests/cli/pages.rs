@@ -85,7 +85,8 @@ fn a_gate_that_judges_too_little_fails_in_its_page() {
     let exec = gate::process::command_of("formulas=fog/exp");
     let page = stdout(&lightmeter(&[
         "gate",
-        "fog/*",
+        "fog/exp",
+        "fog/exp-radial",
         "--exec",
         &exec,
         "--cases",

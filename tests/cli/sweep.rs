@@ -394,6 +394,71 @@ const REFUSED: &[(&[&str], &str)] = &[
 ];
 
 #[test]
+fn a_sweep_is_along_a_row_that_tells_something() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
+    // In the middle of all domains Blinn's highlight is 0, whatever the exponent.
+    let doubled = edited("sweep-doubled", "lighting.wgsl", |text| {
+        text.replace(
+            "vector_cosine_power(n, vector_halfway(v, l), shininess)",
+            "vector_cosine_power(n, vector_halfway(v, l), 2.0 * shininess)",
+        )
+    });
+    let sweep = ["sweep", "lighting/blinn", "--over", "shininess", "--from", "20", "--to", "20.01"];
+    let shaders = ["--shaders", doubled.to_str().expect("UTF-8")];
+    assert_eq!(code(&lightmeter(&sweep)), 0);
+    let output = lightmeter(&[&sweep[..], &shaders].concat());
+    assert_eq!(code(&output), 1, "{}", stdout(&output));
+    // The command for one input has the row, and says the same of it.
+    let said = stdout(&output);
+    let again = said.lines().find_map(|line| line.trim().strip_prefix("again")).expect("a command").trim().to_owned();
+    let output = std::process::Command::new("sh")
+        .args(["-c", &again.replacen("lightmeter", env!("CARGO_BIN_EXE_lightmeter"), 1)])
+        .output()
+        .expect("the shell starts");
+    assert!(code(&output) == 1 && stdout(&output).contains("1 of 1 inputs outside"), "{again}: {}", stderr(&output));
+}
+
+#[test]
+fn a_sweep_that_judges_nothing_is_no_success() {
+    for (sweep, said) in [
+        (&["fog/exp", "--over", "p.x"][..], "no output of fog/exp depends on p.x"),
+        (&["fog/exp", "--set", "density=0"], "does not depend on p.z"),
+        (
+            &["fog/exp", "--output", "color.g", "--set", "fog=0.5", "--set", "shaded=0.5"],
+            "color.g of fog/exp does not depend on p.z",
+        ),
+        (
+            &["fog/linear", "--from", "1", "--to", "1.0001", "--set", "dmin=5", "--set", "dmax=5"],
+            "does not depend on p.z",
+        ),
+        (
+            &[
+                "attenuation/polynomial",
+                "--over",
+                "d",
+                "--from",
+                "1",
+                "--to",
+                "1.001",
+                "--set",
+                "kc=0",
+                "--set",
+                "kl=0",
+                "--set",
+                "kq=0",
+            ],
+            "",
+        ),
+    ] {
+        let output = lightmeter(&[&["sweep", "--adapter", "cpu"], sweep].concat());
+        let told = stdout(&output) + &stderr(&output);
+        assert!(code(&output) == 3 && told.contains(said), "{sweep:?}: {told}");
+    }
+}
+
+#[test]
 fn what_cannot_be_swept_is_refused_with_what_would_be_right() {
     if crate::needs::lacks_lavapipe() {
         return;

@@ -72,7 +72,7 @@ impl CaseCounts {
 /// How much of what was chosen was judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// Cases that were chosen.
+    /// Cases that were chosen: those that were asked, and those of formulas and scenes that the filter names and the renderer lacks.
     pub chosen: u64,
     /// Of them, those that were judged.
     pub judged: u64,
@@ -230,7 +230,7 @@ impl Problems {
 }
 
 /// A known failure, and what became of its cases.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct KnownFailure {
     /// A glob of cases.
     pub id: String,
@@ -239,6 +239,9 @@ pub struct KnownFailure {
     /// The stage or the target that they fail on; any without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
+    /// The mistakes that make them fail: other failures of the same cases are not expected. Any without it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mistake: Vec<String>,
     /// Cases of it that failed, and groups of it that failed as a whole.
     pub failed: u64,
     /// Cases of it that passed.

@@ -3,13 +3,22 @@
 use crate::options::Options;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::by_case::KnownFailure;
-use lightmeter_document::report::{Group, Report};
+use lightmeter_document::report::{Diagnosis, Group, Report};
 
-/// Notes at the expectations that have a case on a stage or a target whether it failed; whether its failure was expected.
-pub(crate) fn expect(report: &mut Report, options: &Options, id: &str, on: &[&str], has_failed: bool) -> bool {
+/// Notes at the expectations that have a case on a stage or a target whether it failed; whether its failure was expected. A failure has a
+/// diagnosis where mistakes may explain it.
+pub(crate) fn expect(
+    report: &mut Report,
+    options: &Options,
+    id: &str,
+    on: &[&str],
+    has_failed: bool,
+    found: Option<&Diagnosis>,
+) -> bool {
     let mut is_expected = false;
     for (known, expected) in report.expectations.iter_mut().zip(&options.expected) {
-        if expected.has(id, on) {
+        let is_explained = || found.is_some_and(|found| found.is_all_by(&known.mistake));
+        if expected.has(id, on) && (!has_failed || known.mistake.is_empty() || is_explained()) {
             is_expected = true;
             let count = if has_failed { &mut known.failed } else { &mut known.passed };
             *count += 1;
@@ -27,12 +36,13 @@ pub(crate) fn expect_nothing(report: &mut Report) {
     }
 }
 
-/// The expectations of a group's problems.
+/// The expectations of a group's problems. A mistake excuses cases alone.
 fn selecting<'a>(group: &Group, expectations: &'a mut [KnownFailure]) -> impl Iterator<Item = &'a mut KnownFailure> {
     let on = [Some(group.stage.to_string()), group.target.as_ref().map(ToString::to_string)];
     let id = group.id.clone();
     expectations.iter_mut().filter(move |known| {
-        (known.on.is_none() || on.contains(&known.on))
+        known.mistake.is_empty()
+            && (known.on.is_none() || on.contains(&known.on))
             && Filter::new(std::slice::from_ref(&known.id)).is_ok_and(|filter| filter.selects(&id))
     })
 }

@@ -5,13 +5,14 @@ use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::by_case::{CaseCounts, CaseTotals};
 use lightmeter_document::pack::Choice;
 use lightmeter_document::report::{Group, Report, Totals};
-use lightmeter_document::{Document, cases};
+use lightmeter_document::{Document, cases, thousands};
 use lightmeter_files::read::MOST_TEXT;
 use lightmeter_files::shown;
 use lightmeter_judge::cases::{count_of, expanded};
 use lightmeter_judge::image::file::whole;
 use lightmeter_scene::target::TargetFormat;
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 /// Errors up to this are no worse than others: half a step, half a ULP.
@@ -27,8 +28,8 @@ pub struct Standard {
     choice: Choice,
     generator: u64,
     profile: String,
-    /// Who answered; `None` of a run, whose groups name their adapters.
-    renderer: Option<String>,
+    /// Who answered, by name.
+    subjects: Subjects,
     /// Whether a shader was judged in the place of the suite's own.
     is_of_a_shader: bool,
     /// Which part of the cases, as `2/8`; none for all.
@@ -42,6 +43,42 @@ pub struct Standard {
     sums: Vec<(&'static str, u64, u64)>,
     /// Why it is no standard to hold others to.
     unfit: Option<&'static str>,
+}
+
+/// Who was judged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subjects {
+    /// Adapters of a run, by their names; its groups name them as well.
+    Adapters(BTreeSet<String>),
+    /// A renderer that was asked.
+    Renderer(String),
+}
+
+impl Subjects {
+    /// Those of a report.
+    #[must_use]
+    pub fn of(report: &Report) -> Self {
+        match &report.renderer {
+            Some(renderer) => Self::Renderer(shown(&renderer.identity.name).into_owned()),
+            None => Self::Adapters(report.adapters.iter().map(|adapter| shown(&adapter.name).into_owned()).collect()),
+        }
+    }
+
+    fn is_one(&self) -> bool {
+        match self {
+            Self::Adapters(names) => names.len() == 1,
+            Self::Renderer(_) => true,
+        }
+    }
+}
+
+impl Display for Subjects {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Adapters(names) => f.write_str(&names.iter().map(String::as_str).collect::<Vec<_>>().join(" and ")),
+            Self::Renderer(name) => f.write_str(name),
+        }
+    }
 }
 
 /// A group that is compared with the one of the same name.
@@ -75,6 +112,11 @@ impl ComparedGroup {
             is_by_case: group.by_case.is_some(),
             group: group.clone(),
         }
+    }
+
+    /// What it is called whoever computed it.
+    fn across(&self) -> String {
+        format!("{}, {}", self.group.id, self.group.place())
     }
 }
 
@@ -112,7 +154,7 @@ impl From<&Report> for Standard {
             choice: compared_by.choice,
             generator: compared_by.generator,
             profile: report.profile.to_string(),
-            renderer: report.renderer.as_ref().map(|renderer| shown(&renderer.identity.name).into_owned()),
+            subjects: Subjects::of(report),
             is_of_a_shader: report.shader.is_some(),
             shard: compared_by.shard,
             targets: compared_by.targets.iter().map(ToString::to_string).collect(),
@@ -126,7 +168,8 @@ impl From<&Report> for Standard {
 impl Standard {
     /// Whether a group that is missing here, and is there in an earlier result, was asked for.
     fn asks_for(&self, before: &ComparedGroup, is_part: bool) -> bool {
-        let (group, target) = (&before.group, self.renderer.as_ref().and_then(|_| before.group.blended_on()));
+        let is_asked = matches!(self.subjects, Subjects::Renderer(_));
+        let (group, target) = (&before.group, before.group.blended_on().filter(|_| is_asked));
         if target.is_some_and(|target| !self.targets.iter().any(|asked| target == asked)) {
             return false;
         }
@@ -160,6 +203,33 @@ pub enum BaselineError {
         path: PathBuf,
         /// What differs.
         differences: Vec<String>,
+    },
+    /// It is of another adapter or renderer.
+    #[error(
+        "{} is a result of {before}, and this is one of {now}; a baseline is of the same adapters or the same renderer, and `--across` compares \
+         one with another, formula by formula",
+        .path.display()
+    )]
+    Subjects {
+        /// The file.
+        path: PathBuf,
+        /// Who was judged then.
+        before: String,
+        /// Who is judged now.
+        now: String,
+    },
+    /// One is to be compared with another, and there are several.
+    #[error(
+        "{} is a result of {before}, and this is one of {now}; with `--across` each must be of one adapter: choose it by `--adapter`",
+        .path.display()
+    )]
+    Several {
+        /// The file.
+        path: PathBuf,
+        /// Who was judged then.
+        before: String,
+        /// Who is judged now.
+        now: String,
     },
     /// It cannot be written.
     #[error("cannot write {}: {message}", .path.display())]
@@ -231,7 +301,23 @@ impl Baseline {
         Ok(Self(standard))
     }
 
-    /// What is worse in a result, beyond `factor` where it is an error. A part of the cases, as a shard, is compared with the same part.
+    /// Checks that it is of the same adapters or the same renderer, or, where that is asked for, of one as well as the other.
+    ///
+    /// # Errors
+    /// Where it is of others.
+    pub fn is_by(&self, now: &Subjects, across: bool, path: &Path) -> Result<(), BaselineError> {
+        let before = &self.0.subjects;
+        let [several, other] = [!(before.is_one() && now.is_one()), before != now];
+        let (path, before, now) = (path.into(), before.to_string(), now.to_string());
+        match (across, other) {
+            (true, _) if several => Err(BaselineError::Several { path, before, now }),
+            (false, true) => Err(BaselineError::Subjects { path, before, now }),
+            _ => Ok(()),
+        }
+    }
+
+    /// What is worse in a result, beyond `factor` where it is an error. A part of the cases, as a shard, is compared with the same part. With
+    /// `across` one adapter or renderer is compared with another, formula by formula.
     ///
     /// # Errors
     /// Where the cases are others.
@@ -239,7 +325,7 @@ impl Baseline {
         &self,
         now: &Standard,
         factor: f64,
-        is_shard: bool,
+        (is_shard, across): (bool, bool),
         path: &Path,
     ) -> Result<Vec<String>, BaselineError> {
         let asked = now.groups.iter().map(|group| (group.name.as_str(), group.counts.totals.asked));
@@ -249,12 +335,8 @@ impl Baseline {
             let differences = vec![format!("shard {before} there, {now} here")];
             return Err(BaselineError::Others { path: path.into(), differences });
         }
-        if let (Some(before), Some(now)) = (&self.0.renderer, &now.renderer)
-            && before != now
-        {
-            let differences = vec![format!("renderer {before} there, {now} here")];
-            return Err(BaselineError::Others { path: path.into(), differences });
-        }
+        self.is_by(&now.subjects, across, path)?;
+        let name = |group: &ComparedGroup| if across { group.across() } else { group.name.clone() };
         if self.0.is_of_a_shader != now.is_of_a_shader {
             let what = |is_own: bool| if is_own { "a shader of your own" } else { "the built-in shaders" };
             let differences = vec![format!("{} there, {} here", what(self.0.is_of_a_shader), what(now.is_of_a_shader))];
@@ -266,7 +348,8 @@ impl Baseline {
         let comparison = Comparison { factor, is_part, expected };
         let mut worse = vec![];
         for before in &self.0.groups {
-            match now.groups.iter().find(|group| group.name == before.name) {
+            let before_name = name(before);
+            match now.groups.iter().find(|group| name(group) == before_name) {
                 None if !now.asks_for(before, is_part) => {}
                 None => worse.push(format!("{}: it is not among the cases any more", before.name)),
                 Some(now) => worse.extend(comparison.of(before, now)),
@@ -428,7 +511,10 @@ impl Comparison {
         let new: Vec<String> =
             cases.filter(|case| !known.contains(case)).filter(|case| what != "failed" || !is_expected(case)).collect();
         let named = new.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
-        let more = if new.len() > MOST_NAMED { ", …" } else { "" };
+        let more = match new.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {} more", thousands(more as u64)),
+        };
         (!new.is_empty()).then(|| format!("{name}: {} newly {what}: {named}{more}", cases_of(new.len())))
     }
 }
@@ -443,15 +529,22 @@ fn read(path: &Path) -> Result<Report, BaselineError> {
     Report::read(&text).map_err(|error| failed(error.to_string()))
 }
 
-/// Writes a result as a baseline, whole or not at all.
+/// Writes a result as a baseline, whole or not at all. Whether anything changed: a file that says the same but for times is left as it is.
 ///
 /// # Errors
 /// Where it cannot be written, or the run was broken off, unstable or judged nothing.
-pub fn update(report: &Report, path: &Path) -> Result<(), BaselineError> {
+pub fn update(report: &Report, path: &Path) -> Result<bool, BaselineError> {
     if let Some(why) = Standard::from(report).unfit {
         return Err(BaselineError::Unfit { path: path.into(), why });
     }
     let failed = |message: String| BaselineError::Write { path: path.into(), message };
-    let text = report.to_json().map_err(|error| failed(error.to_string()))?;
-    whole(path, text.as_bytes()).map_err(|error| failed(error.to_string()))
+    let json = |report: &Report| report.to_json().map_err(|error| failed(error.to_string()));
+    // What is no result is written over.
+    if let Ok(before) = read(path)
+        && json(&before.without_times())? == json(&report.without_times())?
+    {
+        return Ok(false);
+    }
+    whole(path, json(report)?.as_bytes()).map_err(|error| failed(error.to_string()))?;
+    Ok(true)
 }

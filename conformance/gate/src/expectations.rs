@@ -4,12 +4,19 @@ use super::given::{is_everything, refused};
 use lightmeter_catalogue::cases::Stage;
 use lightmeter_catalogue::filter::Filter;
 use lightmeter_document::by_case::KnownFailure;
+use lightmeter_faults::KnownMistakes;
 use lightmeter_files::read::MOST_TEXT;
 use lightmeter_judge::cases::ExpectedFailure;
+use lightmeter_judge::diagnose::Made;
 use lightmeter_scene::target::TargetFormat;
 use semver::{Version, VersionReq};
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Expectations that are named in a line.
+const MOST_NAMED: usize = 5;
 
 /// A known failure, as the file has it.
 #[derive(Clone, Debug, Deserialize)]
@@ -25,12 +32,30 @@ struct Written {
     version: Option<String>,
     /// The stage, or the target of a blend state or an image, that they fail on; any without it.
     on: Option<String>,
+    /// The mistakes that make them fail, by name: nothing else is excused. Whatever makes them fail without it.
+    #[serde(default, deserialize_with = "one_or_several")]
+    mistake: Vec<String>,
     /// Whether the renderer ends or hangs at them: such a run is no broken one.
     #[serde(default)]
     crash: bool,
     /// Whether they may pass: what fails on some machines, or in some cases of many.
     #[serde(default)]
     may_pass: bool,
+}
+
+/// A name, or a list of names.
+fn one_or_several<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a mistake such as \"fog-radial\", or a list of mistakes")]
+    enum Names {
+        One(String),
+        Several(Vec<String>),
+    }
+    match Names::deserialize(deserializer)? {
+        Names::One(name) => Ok(vec![name]),
+        Names::Several(names) if names.is_empty() => Err(D::Error::custom("`mistake` is an empty list")),
+        Names::Several(names) => Ok(names),
+    }
 }
 
 /// Cases that a renderer is known to skip, as the file has them.
@@ -67,8 +92,24 @@ pub struct ExpectationError {
 /// A file of known failures and skips.
 #[derive(Clone, Debug, Default)]
 pub struct Expectations {
-    written: Vec<(Written, Filter, Option<VersionReq>)>,
+    written: Vec<ReadFailure>,
     skipped: Vec<(WrittenSkip, Filter, Option<VersionReq>)>,
+}
+
+/// A known failure, read.
+#[derive(Clone, Debug)]
+struct ReadFailure {
+    written: Written,
+    filter: Filter,
+    versions: Option<VersionReq>,
+    made: Option<Arc<KnownMistakes>>,
+}
+
+impl ReadFailure {
+    /// Whether it is of a renderer.
+    fn concerns(&self, renderer: &str, version: Option<&Version>) -> bool {
+        is_of((self.written.renderer.as_ref(), self.versions.as_ref()), renderer, version)
+    }
 }
 
 /// The versions that are meant.
@@ -117,8 +158,10 @@ impl Expectations {
                     places.join(", ")
                 ));
             }
-            let version = versions(written.version.as_deref(), &format!("expected[{k}]"))?;
-            Ok((written, filter, version))
+            let versions = versions(written.version.as_deref(), &format!("expected[{k}]"))?;
+            let made = (!written.mistake.is_empty()).then(|| KnownMistakes::by_names(&written.mistake)).transpose();
+            let made = made.map_err(|error| format!("expected[{k}] `{}`: {error}", written.id))?.map(Arc::new);
+            Ok(ReadFailure { written, filter, versions, made })
         };
         let written = file.expected.into_iter().enumerate().map(read).collect::<Result<Vec<_>, String>>()?;
         nothing_is_left(&written)?;
@@ -136,7 +179,7 @@ impl Expectations {
 
     /// The globs of cases.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
-        let failures = self.written.iter().map(|(written, ..)| written.id.as_str());
+        let failures = self.written.iter().map(|one| one.written.id.as_str());
         failures.chain(self.skipped.iter().map(|(skip, ..)| skip.id.as_str()))
     }
 
@@ -144,22 +187,36 @@ impl Expectations {
     #[must_use]
     pub fn of(&self, renderer: &str, version: &str) -> Vec<ExpectedFailure> {
         let version = lenient(version);
-        let concerns = |(written, _, range): &&(Written, Filter, Option<VersionReq>)| {
-            is_of((written.renderer.as_ref(), range.as_ref()), renderer, version.as_ref())
-        };
-        let of = |(written, filter, _): &(Written, Filter, _)| ExpectedFailure {
+        let of = |ReadFailure { written, filter, made, .. }: &ReadFailure| ExpectedFailure {
             known: KnownFailure {
                 id: written.id.clone(),
                 reason: written.reason.clone(),
                 on: written.on.clone(),
+                mistake: written.mistake.clone(),
                 failed: 0,
                 passed: 0,
                 crash: written.crash,
                 may_pass: written.may_pass,
             },
             filter: filter.clone(),
+            made: made.clone().map(|made| made as Arc<dyn Made>),
         };
-        self.written.iter().filter(concerns).map(of).collect()
+        self.written.iter().filter(|one| one.concerns(renderer, version.as_ref())).map(of).collect()
+    }
+
+    /// A line on the entries that are of none of these renderers, each with its version; nothing where there are none.
+    #[must_use]
+    pub fn of_others(&self, renderers: &[(&str, &str)]) -> Option<String> {
+        let versions: Vec<_> = renderers.iter().map(|(name, version)| (*name, lenient(version))).collect();
+        let is_of_none = |concerns: &dyn Fn(&str, Option<&Version>) -> bool| {
+            !versions.iter().any(|(name, version)| concerns(name, version.as_ref()))
+        };
+        let failures = self.written.iter().filter(|one| is_of_none(&|name, version| one.concerns(name, version)));
+        let skips = self.skipped.iter().filter(|(skip, _, range)| {
+            is_of_none(&|name, version| is_of((skip.renderer.as_ref(), range.as_ref()), name, version))
+        });
+        let ids = failures.map(|one| &one.written.id).chain(skips.map(|(skip, ..)| &skip.id));
+        told_ids(ids.map(String::as_str).collect(), "of another renderer or version than this")
     }
 
     /// The cases that a renderer is known to skip.
@@ -172,12 +229,21 @@ impl Expectations {
     }
 }
 
+/// A line on expectations that have something in common.
+pub fn told_ids(ids: Vec<&str>, what: &str) -> Option<String> {
+    let (named, more) = ids.split_at(ids.len().min(MOST_NAMED));
+    let named: Vec<String> = named.iter().map(|id| format!("`{id}`")).collect();
+    let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+    let are = if ids.len() == 1 { "expectation is" } else { "expectations are" };
+    (!ids.is_empty()).then(|| format!("{} {are} {what}: {}{more}", ids.len(), named.join(", ")))
+}
+
 /// Refuses entries that leave nothing to be judged together: those that may pass, of any renderer and of one by name.
-fn nothing_is_left(written: &[(Written, Filter, Option<VersionReq>)]) -> Result<(), String> {
-    let may_pass: Vec<_> = written.iter().filter(|(written, ..)| written.may_pass).collect();
-    for (one, ..) in &may_pass {
+fn nothing_is_left(written: &[ReadFailure]) -> Result<(), String> {
+    let may_pass: Vec<&ReadFailure> = written.iter().filter(|one| one.written.may_pass).collect();
+    for one in may_pass.iter().map(|one| &one.written) {
         let concerns = |other: &Written| other.renderer.is_none() || other.renderer == one.renderer;
-        let together = may_pass.iter().filter(|(other, ..)| concerns(other)).map(|(_, filter, _)| filter);
+        let together = may_pass.iter().filter(|other| concerns(&other.written)).map(|other| &other.filter);
         if is_everything(&together.collect::<Vec<_>>()) {
             let whose = one.renderer.as_ref().map_or_else(String::new, |renderer| format!(" of `{renderer}`"));
             return Err(format!(
@@ -249,6 +315,12 @@ mod tests {
                  [[expected]]\nid = \"[g-z]*\"\nreason = \"r\"\nrenderer = \"one\"\nmay_pass = true",
                 "the entries of `one` with `may_pass` match everything together",
             ),
+            (
+                "[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = \"fog-radail\"",
+                "expected[0] `fog`: there is no mistake `fog-radail`; did you mean `fog-radial`?",
+            ),
+            ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = []", "`mistake` is an empty list"),
+            ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = 5", "expected a mistake such as"),
             ("[[skipped]]\nid = \"*\"\nreason = \"r\"", "skipped[0] `*` matches everything"),
             ("[[skipped]]\nid = \"fog\"\nreason = \"\"", "skipped[0] `fog` has no reason"),
         ] {

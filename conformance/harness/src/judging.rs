@@ -151,7 +151,7 @@ impl Judged {
         let mut report = self.report(&part.selection, &choice)?;
         self.has_judged.fetch_or(report.has_judged(), Ordering::Relaxed);
         if let Some((path, baseline)) = &self.baseline {
-            report.regressions = baseline.compare(&Standard::from(&report), GROWTH, false, path)?;
+            report.regressions = baseline.compare(&Standard::from(&report), GROWTH, (false, false), path)?;
         }
         Ok(report)
     }

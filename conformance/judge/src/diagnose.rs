@@ -8,6 +8,7 @@ use lightmeter_arithmetic::Profile;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::report::{Diagnosis, Problem};
 use lightmeter_scene::frame::Frame;
+use std::fmt::Debug;
 
 /// Knows mistakes, and tells which one explains answers. `lightmeter_faults` has the one that commands use.
 pub trait Diagnose: Sync {
@@ -19,6 +20,12 @@ pub trait Diagnose: Sync {
 
     /// What explains a wrong image of a frame.
     fn image(&self, frame: &Frame, image: &StoredImage, expected: &[LegalPixel], profile: &Profile) -> Diagnosis;
+}
+
+/// Mistakes that a renderer is known to make.
+pub trait Made: Debug + Send + Sync {
+    /// Whether a wrong answer to a formula is what one of them gives, or all of them together.
+    fn explains(&self, member: &Member, answered: &Answered<'_>, profile: &Profile) -> bool;
 }
 
 /// What the diagnosis of all answers to a formula says.

@@ -3,6 +3,7 @@
 use crate::cases::{Answers, CaseTally, ExpectedFailure, Unanswered};
 use crate::chunk::{Chunk, TASK};
 use crate::devices::{Known, grant};
+use crate::diagnose::Made;
 use crate::kept::KeptRow;
 use crate::sample::{Sample, row_number};
 use crate::tally::{KEPT, Tally};
@@ -138,7 +139,7 @@ impl RowStanding {
             let totals = &mut self.tally.totals;
             totals.skipped += u64::from(matches!(why, Unanswered::Skipped(_) | Unanswered::Undeclared(_)));
             if self.cases.unanswered(place, why) && !by.expected.is_empty() {
-                self.cases.expect(by.expected, &id(), &[stage.name()], true);
+                self.cases.expect(by.expected, &id(), &[stage.name()], true, |_| false);
             }
             return;
         }
@@ -148,7 +149,14 @@ impl RowStanding {
         if by.counts_cases {
             self.cases.judged(place, chunk.inputs_of(case), failed > 0, error, errors);
         }
-        if !by.expected.is_empty() && self.cases.expect(by.expected, &id(), &[stage.name()], failed > 0) {
+        if by.expected.is_empty() {
+            return;
+        }
+        let explains = |made: &dyn Made| {
+            let row = kept(chunk, &answers.words, case, stage, by);
+            made.explains(chunk.members[place.0], &row.answers(place.1, true), by.profile)
+        };
+        if self.cases.expect(by.expected, &id(), &[stage.name()], failed > 0, explains) {
             self.tally.totals.failed -= failed;
             self.tally.totals.expected_failures += failed;
         }
@@ -208,19 +216,9 @@ fn judge_values(
     let (member, outputs) = (chunk.members[chunk.of[case]], chunk.members[0].spec.output_len());
     let range = case * outputs..(case + 1) * outputs;
     let mut own = [Accept::ANY; 16];
-    let legal = if is_arithmetic(member, stage) {
-        &chunk.intervals[range.clone()]
-    } else {
-        intervals(member, chunk.inputs_of(case), stage, by.known, by.profile, &mut own[..outputs]);
-        &own[..outputs]
-    };
+    let legal = legal(chunk, case, stage, by, &mut own);
     let is_random = matches!(chunk.cases[case], CaseRef::Random(_));
-    let kept = || KeptRow {
-        inputs: chunk.inputs_of(case).to_vec(),
-        values: words[range.clone()].iter().map(|&bits| f32::from_bits(bits)).collect(),
-        reference: chunk.references[range.clone()].to_vec(),
-        legal: legal.to_vec(),
-    };
+    let kept = || kept(chunk, words, case, stage, by);
     let tally = &mut standing.tally;
     let (failed, pardoned) = (tally.totals.failed, tally.totals.expected_failures);
     let (mut greatest, mut errors) = (0.0, (0.0, 0));
@@ -261,6 +259,35 @@ fn judge_values(
         standing.right.push((chunk.of[case], chunk.cases[case]), number, kept);
     }
     (greatest, errors)
+}
+
+/// What is legal of a case's outputs in a stage; `own` has room for it where the chunk has not.
+fn legal<'a>(
+    chunk: &'a Chunk<'_>,
+    case: usize,
+    stage: Stage,
+    by: &Judging<'_>,
+    own: &'a mut [Accept; 16],
+) -> &'a [Accept] {
+    let (member, outputs) = (chunk.members[chunk.of[case]], chunk.members[0].spec.output_len());
+    if is_arithmetic(member, stage) {
+        return &chunk.intervals[case * outputs..(case + 1) * outputs];
+    }
+    intervals(member, chunk.inputs_of(case), stage, by.known, by.profile, &mut own[..outputs]);
+    &own[..outputs]
+}
+
+/// A case of a chunk with what was answered.
+fn kept(chunk: &Chunk<'_>, words: &[u32], case: usize, stage: Stage, by: &Judging<'_>) -> KeptRow {
+    let outputs = chunk.members[0].spec.output_len();
+    let range = case * outputs..(case + 1) * outputs;
+    let mut own = [Accept::ANY; 16];
+    KeptRow {
+        inputs: chunk.inputs_of(case).to_vec(),
+        values: words[range.clone()].iter().map(|&bits| f32::from_bits(bits)).collect(),
+        reference: chunk.references[range].to_vec(),
+        legal: legal(chunk, case, stage, by, &mut own).to_vec(),
+    }
 }
 
 /// Whether a stage computes a formula by the shading language's arithmetic alone.

@@ -2,6 +2,7 @@
 
 use lightmeter_document::by_case::KnownFailure;
 use lightmeter_document::report::{Interrupted, Report};
+use lightmeter_document::thousands;
 use std::fmt::{Result, Write};
 
 /// Cases that are named.
@@ -39,9 +40,20 @@ pub(crate) fn lines(report: &Report) -> Vec<(String, String)> {
     let mut said = vec![];
     let changed = |id: &String| (id.clone(), "its answer changed when it was asked once more".to_owned());
     said.extend(report.unstable_cases.iter().take(MOST_NAMED).map(changed));
+    let more = report.unstable.saturating_sub(report.unstable_cases.len().min(MOST_NAMED) as u64);
+    if more > 0 {
+        said.push(("unstable".to_owned(), format!("{more} more answers changed when they were asked once more")));
+    }
     said.extend(report.regressions.iter().map(|what| (BASELINE.to_owned(), what.clone())));
     let passes = passing(report).into_iter();
-    said.extend(passes.map(|one| (one.id.clone(), format!("passes, and is expected to fail: {}", one.reason))));
+    said.extend(passes.map(|one| {
+        let how = if one.mistake.is_empty() {
+            "passes, and is expected to fail"
+        } else {
+            "fails by no such mistake, as is expected"
+        };
+        (one.id.clone(), format!("{how}: {}", one.reason))
+    }));
     said
 }
 
@@ -50,11 +62,13 @@ pub(crate) fn lines(report: &Report) -> Vec<(String, String)> {
 /// # Errors
 /// Where the writer fails.
 pub(crate) fn text(report: &Report, out: &mut impl Write) -> Result {
-    listed("changed when they were asked once more", &report.unstable_cases, out)?;
-    listed("are worse than in the baseline", &report.regressions, out)?;
+    listed(report.unstable, "changed when they were asked once more", &report.unstable_cases, out)?;
+    let worse = &report.regressions;
+    listed(worse.len() as u64, "are worse than in the baseline", worse, out)?;
     let unexpected = passing(report);
     for one in report.expectations.iter().filter(|one| one.failed + one.passed > 0) {
         let said = match (one.failed, unexpected.contains(&one)) {
+            (0, true) if !one.mistake.is_empty() => "FAILS BY NO SUCH MISTAKE: take it out",
             (0, true) => "PASSES: take it out",
             (0, false) => "passes, as it may",
             _ => "fails as expected",
@@ -73,14 +87,27 @@ pub(crate) fn text(report: &Report, out: &mut impl Write) -> Result {
     Ok(())
 }
 
+/// What a renderer has of what was chosen, in one line; nothing where it has all.
+pub(crate) fn declared(report: &Report) -> Option<String> {
+    let [declared, all] = report.declared()?.map(|count| thousands(count as u64));
+    let chosen = report.compared_by.as_ref().is_some_and(|by| !by.choice.filter.is_empty());
+    let which = if chosen { " that the filter selects" } else { "" };
+    Some(format!("the renderer declares {declared} of {all} formulas and scenes{which}; the others were not asked"))
+}
+
 /// Writes a list with its number, the first of it.
 ///
 /// # Errors
 /// Where the writer fails.
-pub(crate) fn listed(what: &str, all: &[String], out: &mut impl Write) -> Result {
-    if !all.is_empty() {
-        writeln!(out, "\n{} {what}:", all.len())?;
-        all.iter().take(20).try_for_each(|one| writeln!(out, "  {one}"))?;
+pub(crate) fn listed(count: u64, what: &str, named: &[String], out: &mut impl Write) -> Result {
+    if count == 0 {
+        return Ok(());
     }
-    Ok(())
+    writeln!(out, "\n{} {what}:", thousands(count))?;
+    let named = &named[..named.len().min(MOST_NAMED)];
+    named.iter().try_for_each(|one| writeln!(out, "  {one}"))?;
+    match count.saturating_sub(named.len() as u64) {
+        0 => Ok(()),
+        more => writeln!(out, "  and {} more", thousands(more)),
+    }
 }

@@ -33,7 +33,9 @@ pub fn write(document: &SweepDocument, text: &str, rerun: &str, out: &mut impl W
     }
     writeln!(out)?;
     bars(document, out)?;
+    let has_judged = found.indeterminate < found.inputs;
     let (mark, state) = match (found.failed, document.is_finished()) {
+        (0, true) if !has_judged => ("– ", ": nothing is promised of any, so nothing was judged".into()),
         (0, true) => ("✓ ", String::new()),
         (0, false) => ("", format!(" so far: {} of {} blocks are swept", document.done, document.blocks)),
         (_, true) => ("✗ ", String::new()),

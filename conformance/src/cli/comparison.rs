@@ -3,9 +3,10 @@
 use super::say;
 use anyhow::bail;
 use clap::Args;
-use lightmeter::document::report::Report;
-use lightmeter::gate::baseline::{self, Baseline, BaselineError, Standard};
-use lightmeter::gate::expectations::Expectations;
+use lightmeter::document::by_case::KnownFailure;
+use lightmeter::document::report::{Report, Sentence};
+use lightmeter::gate::baseline::{self, Baseline, BaselineError, Standard, Subjects};
+use lightmeter::gate::expectations::{Expectations, told_ids};
 use lightmeter::gate::plan::unmatched;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,9 @@ pub(crate) struct Comparison {
     /// By how much an error may grow against the baseline
     #[arg(long, value_name = "FACTOR", default_value_t = 2.0, requires = "baseline", value_parser = factor)]
     growth: f64,
+    /// Compare with a baseline of another adapter or renderer, formula by formula
+    #[arg(long, requires = "baseline")]
+    across: bool,
     /// Write the result to the baseline's file instead of comparing with it
     #[arg(long, requires = "baseline")]
     update_baseline: bool,
@@ -43,12 +47,18 @@ pub(crate) struct Earlier {
     pub(crate) path: PathBuf,
     pub(crate) baseline: Baseline,
     growth: f64,
+    across: bool,
 }
 
 impl Earlier {
     /// What is worse now.
     pub(crate) fn compare(&self, now: &Standard, is_shard: bool) -> Result<Vec<String>, BaselineError> {
-        self.baseline.compare(now, self.growth, is_shard, &self.path)
+        self.baseline.compare(now, self.growth, (is_shard, self.across), &self.path)
+    }
+
+    /// Checks, before anything is judged, that it is of those who are.
+    pub(crate) fn is_by(&self, now: &Subjects) -> Result<(), BaselineError> {
+        self.baseline.is_by(now, self.across, &self.path)
     }
 
     /// What is better now, and what is new.
@@ -67,7 +77,12 @@ impl Comparison {
     pub(crate) fn earlier(&self, is_asked: bool) -> Result<Option<Earlier>, BaselineError> {
         let path = self.baseline.as_ref().filter(|_| !self.update_baseline);
         let earlier = |path: &PathBuf| {
-            Ok(Earlier { path: path.clone(), baseline: Baseline::read(path, is_asked)?, growth: self.growth })
+            Ok(Earlier {
+                path: path.clone(),
+                baseline: Baseline::read(path, is_asked)?,
+                growth: self.growth,
+                across: self.across,
+            })
         };
         path.map(earlier).transpose()
     }
@@ -76,7 +91,8 @@ impl Comparison {
     pub(crate) fn update(&self, report: &Report) -> Result<(), BaselineError> {
         let Some(path) = self.baseline.as_ref().filter(|_| self.update_baseline) else { return Ok(()) };
         match baseline::update(report, path) {
-            Ok(()) => say(&format!("the baseline {} is this result now", path.display())),
+            Ok(true) => say(&format!("the baseline {} is this result now", path.display())),
+            Ok(false) => say(&format!("the baseline {} is this result already, and stays as it is", path.display())),
             // The result itself says how the command ends.
             Err(error @ BaselineError::Unfit { .. }) => say(&format!("{error}")),
             Err(error) => return Err(error),
@@ -91,4 +107,18 @@ pub(crate) fn matches_something(expectations: &Expectations) -> anyhow::Result<(
         Some(id) => bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`"),
         None => Ok(()),
     }
+}
+
+/// What of the expectations concerns nothing that was judged, each in a line: entries of other renderers, given by name and version, and entries
+/// none of whose cases was.
+pub(crate) fn unused(expectations: &Expectations, subjects: &[(&str, &str)], report: &Report) -> Vec<Sentence> {
+    // What was judged of a shard, or of an interrupted run, is a part.
+    let is_part = report.interrupted.is_some() || report.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
+    let is_unseen = |one: &&KnownFailure| !is_part && !one.crash && one.failed + one.passed == 0;
+    let unseen = report.expectations.iter().filter(is_unseen).map(|one| one.id.as_str()).collect();
+    let lines = [
+        expectations.of_others(subjects),
+        told_ids(unseen, "of cases that were not judged, or that fail by something else"),
+    ];
+    lines.into_iter().flatten().map(Sentence::from).collect()
 }

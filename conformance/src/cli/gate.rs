@@ -1,7 +1,7 @@
 //! `lightmeter gate`.
 
 use super::clock::now;
-use super::comparison::{Comparison, Earlier, matches_something};
+use super::comparison::{Comparison, Earlier, matches_something, unused};
 use super::config::used;
 use super::observed::is_time_told;
 use super::options::{AlsoJson, ReportFormat, Required, ShardArgument, Targets};
@@ -26,7 +26,7 @@ use lightmeter::faults::{Mistakes, explain};
 use lightmeter::files::lines;
 use lightmeter::filter::Filter;
 use lightmeter::gate::answers::{AnswerFile, FileRenderer};
-use lightmeter::gate::baseline::Standard;
+use lightmeter::gate::baseline::{Standard, Subjects};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::pack;
 use lightmeter::gate::plan::{GatePlan, unmatched};
@@ -128,7 +128,7 @@ impl Gate {
         self.also_json.is_writable([("out", self.out.as_deref()), ("expect", expect), ("baseline", baseline)])?;
         let stop = stopped_by_signals()?;
         let images = Images::new(self.images.clone())?;
-        let report = self.judge(plan, answers, &expectations, &images, &stop);
+        let report = self.judge(plan, answers, (&expectations, earlier.as_ref()), &images, &stop);
         let mut report = match (report, stop.signal()) {
             (Err(error), Some(signal)) => {
                 say(&format!("error: {error:#}"));
@@ -138,6 +138,9 @@ impl Gate {
         };
         report.seconds = start.elapsed().as_secs_f64();
         report.required = Some(self.required.part());
+        let identity = report.renderer.as_ref().map(|renderer| renderer.identity.clone()).unwrap_or_default();
+        let unused = unused(&expectations, &[(&identity.name, &identity.version)], &report);
+        report.notes.extend(unused);
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         // What was not asked for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());
@@ -211,7 +214,7 @@ impl Gate {
         &self,
         plan: GatePlan,
         answers: Vec<AnswerFile>,
-        expectations: &Expectations,
+        (expectations, earlier): (&Expectations, Option<&Earlier>),
         images: &Images,
         stop: &Stop,
     ) -> anyhow::Result<Report> {
@@ -231,6 +234,9 @@ impl Gate {
                 (files.hello().clone(), Subject::renderer(files.identity(), Box::new(files)))
             }
         };
+        if let Some(earlier) = earlier {
+            earlier.is_by(&Subjects::Renderer(hello.identity().name))?;
+        }
         let options = Options {
             filter: Filter::new(&choice.filter)?,
             cases: choice.cases,

@@ -1,7 +1,7 @@
 //! `lightmeter run`.
 
 use super::clock::now;
-use super::comparison::{Comparison, Earlier, matches_something};
+use super::comparison::{Comparison, Earlier, matches_something, unused};
 use super::config::used;
 use super::options::{AlsoJson, Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
@@ -24,7 +24,7 @@ use lightmeter::document::report::{Identity, Report};
 use lightmeter::document::thousands;
 use lightmeter::faults::{Mistakes, explain};
 use lightmeter::filter::Filter;
-use lightmeter::gate::baseline::Standard;
+use lightmeter::gate::baseline::{Standard, Subjects};
 use lightmeter::gate::expectations::Expectations;
 use lightmeter::judge::cases::ExpectedFailure;
 use lightmeter::nearest::did_you_mean;
@@ -172,6 +172,10 @@ impl Run {
         session: Option<Arc<Session>>,
     ) -> anyhow::Result<Status> {
         let Prepared { expectations, earlier, mut options, compared_by, is_shard } = prepared;
+        if let Some(earlier) = &earlier {
+            let names = subjects.iter().map(|subject| subject.identity.name.to_string());
+            earlier.is_by(&Subjects::Adapters(names.collect()))?;
+        }
         options.expected = known_failures(&expectations, &subjects);
         let stream = if self.is_read_by_people() { Stream::Output } else { Stream::Error };
         let fail_fast = self.fail_fast.then(|| options.stop.clone());
@@ -199,6 +203,9 @@ impl Run {
             ..report
         };
         report.shaders_hash = hash_of(&options.code)?;
+        let named = report.adapters.iter().map(|adapter| (&*adapter.name, &*adapter.driver));
+        let unused = unused(&expectations, &named.collect::<Vec<_>>(), &report);
+        report.notes.extend(unused);
         // Of shards, `merge` works it out.
         report.explained = if is_shard { vec![] } else { explain(&report, options.profile) };
         // What was not judged for want of time is no regression.

@@ -23,7 +23,7 @@ use lightmeter::report::html;
 use lightmeter::report::sweep as text;
 use lightmeter::select::{Shard, catalogue};
 use lightmeter::sweep::file::{self, DocumentError, name_of};
-use lightmeter::sweep::{Asked, Free, Over, PRESETS, Preset, SweepError, SweepPlan, describe, span, sweep};
+use lightmeter::sweep::{Asked, Free, Over, PRESETS, Preset, Refused, SweepError, SweepPlan, describe, span, sweep};
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -48,11 +48,11 @@ pub(crate) struct Sweep {
     /// The greatest
     #[arg(long, value_name = "X", value_parser = float, allow_hyphen_values = true)]
     to: Option<f32>,
-    /// Another input, as `density=0.01`, `p.x=1` or `fog=0.5,0.5,1`; again for several. Those not set are the ready-made
-    /// sweep's, or in the middle of their domain
+    /// Another input, as `density=0.01`, `p.x=1` or `fog=0.5,0.5,1`; again for several. Those not set are the ready-made sweep's, or in the
+    /// middle of their domain, or drawn where the output depends on the free number
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting, allow_hyphen_values = true)]
     set: Vec<(String, Vec<f32>)>,
-    /// The output, as `color.r`; without it: the ready-made sweep's, or the first
+    /// The output, as `color.r`; without it: the ready-made sweep's, or the one that depends on the free number the most
     #[arg(long, value_name = "NAME")]
     output: Option<String>,
     /// The stage: compute, fragment, or fixed-function for the blend modes
@@ -87,7 +87,10 @@ impl Sweep {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         let Some(formula) = &self.formula else { return self.list() };
         let catalogue = catalogue();
-        let plan = SweepPlan::new(&catalogue, formula, &self.asked())?;
+        let plan = SweepPlan::new(&catalogue, formula, &self.asked()).map_err(|why| match why {
+            Refused::Independent(why) => anyhow::Error::from(NothingToRun(why)),
+            wrong @ Refused::Wrong(_) => wrong.into(),
+        })?;
         let shard = self.shard.0;
         check_shard(&plan, shard)?;
         self.check_files()?;
@@ -225,7 +228,8 @@ impl Sweep {
         if let Over::Number { .. } = plan.over {
             let _ = write!(rerun, " --over {} --output {}", plan.over_name(), plan.output_name());
         }
-        for (name, values) in &self.set {
+        let drawn = plan.drawn();
+        for (name, values) in if drawn.is_empty() { &self.set } else { &drawn } {
             let values: Vec<String> = values.iter().map(f32::to_string).collect();
             let _ = write!(rerun, " --set {name}={}", values.join(","));
         }
@@ -278,9 +282,19 @@ fn place_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Whether some input is outside its bound.
+/// Whether some input is outside its bound, or none was judged.
 pub(crate) fn status(document: &SweepDocument) -> Status {
-    if document.statistics.failed > 0 { Status::Failed } else { Status::Success }
+    let found = &document.statistics;
+    match (found.failed, found.indeterminate == found.inputs) {
+        (0, true) => {
+            say(
+                "error: nothing was judged: nothing is promised of any input; sweep another range, or give other inputs by --set",
+            );
+            Status::Nothing
+        }
+        (0, false) => Status::Success,
+        _ => Status::Failed,
+    }
 }
 
 fn presets(format: PageFormat) -> anyhow::Result<String> {

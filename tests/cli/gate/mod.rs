@@ -1,6 +1,7 @@
 //! `lightmeter pack` and `lightmeter gate`: other renderers, by their files and as processes, right ones and all sorts of wrong.
 
 mod columns;
+mod declared;
 mod ending;
 mod hello;
 mod merged;
@@ -424,36 +425,6 @@ fn a_fix_is_no_regression_and_an_expected_failure_is_none() {
     std::fs::write(&expected, format!("[[expected]]\nid = \"{id}\"\nreason = \"known\"\n")).expect("written");
     let (status, report) = judged(&pack, &one, &["--baseline", text(&file), "--expect", text(&expected)]);
     assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (0, None), "expected: {report}");
-}
-
-#[test]
-#[ignore = "long: ./x campaign long"]
-fn declaring_less_is_a_regression_and_declaring_more_is_none() {
-    let (pack, answers) = answered("declared", &["attenuation/constant", "vector/reflect"]);
-    let file = pack.with_file_name("baseline.json");
-    let declares = |formulas: &str| {
-        let hello = format!("{{\"hello\":\"lightmeter.protocol/1\",\"renderer\":\"r\",\"formulas\":[{formulas}]}}\n");
-        let text_of = std::fs::read_to_string(&answers).expect("there are answers");
-        let of = |line: &&str| formulas.split(',').any(|id| line.contains(&id.trim_matches('"').to_owned()));
-        let lines: String = text_of.lines().filter(of).map(|line| line.to_owned() + "\n").collect();
-        let path = answers.with_extension(format!("{}.jsonl", formulas.len()));
-        std::fs::write(&path, hello + &lines).expect("answers can be written");
-        path
-    };
-    let (both, one) = (declares("\"attenuation/constant\",\"vector/reflect\""), declares("\"vector/reflect\""));
-    let (status, _) = judged(&pack, &one, &["--baseline", text(&file), "--update-baseline"]);
-    assert_eq!(status, 0);
-    let (status, report) = judged(&pack, &both, &["--baseline", text(&file), "--growth", "1"]);
-    assert_eq!((status, report["regressions"].as_array().map(Vec::len)), (0, None), "{report}");
-    let (status, _) = judged(&pack, &both, &["--baseline", text(&file), "--update-baseline"]);
-    assert_eq!(status, 0);
-    // The same cases by globs in another order, and by fewer globs.
-    for filter in [&["vector/reflect", "attenuation/constant"][..], &["{attenuation/constant,vector/reflect}"]] {
-        let name = format!("declared-{}", filter.len());
-        let (other, _) = answered(&name, filter);
-        let (status, report) = judged(&other, &one, &["--baseline", text(&file)]);
-        assert!(status == 1 && report["regressions"].to_string().contains("declares less"), "{filter:?}: {report}");
-    }
 }
 
 #[test]

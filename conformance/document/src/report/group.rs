@@ -164,6 +164,12 @@ impl Group {
         self.by_case.as_ref().filter(|_| self.stage == "answer")
     }
 
+    /// Whether a renderer does not declare it, so that none of its cases was asked.
+    #[must_use]
+    pub fn is_not_asked(&self) -> bool {
+        self.asked().is_some_and(|counts| counts.totals.not_asked > 0)
+    }
+
     /// Its name: of a renderer's, the id and the format that was blended on.
     #[must_use]
     pub fn name(&self) -> String {

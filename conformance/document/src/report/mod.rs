@@ -28,6 +28,7 @@ use crate::explained::Explained;
 use crate::{Number, Word};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fmt::{self, Display, Formatter};
 
 /// The schema of [`Report`].
@@ -327,6 +328,26 @@ impl Report {
         }
     }
 
+    /// The same without what differs whenever it is made: when that was, how it was asked for, and what it took.
+    #[must_use]
+    pub fn without_times(&self) -> Self {
+        let mut same = Self {
+            command: None,
+            made_at: None,
+            seconds: 0.0,
+            timing: Timing::default(),
+            stable_costs: vec![],
+            ..self.clone()
+        };
+        for group in &mut same.groups {
+            (group.seconds, group.seconds_warm) = (0.0, None);
+            if let Some(image) = &mut group.image {
+                image.cost = None;
+            }
+        }
+        same
+    }
+
     /// Sums the groups up.
     pub fn sum_up(&mut self) {
         self.totals = Totals::default();
@@ -342,19 +363,46 @@ impl Report {
         all
     }
 
-    /// How many of the cases that were chosen were judged.
+    /// How many of the cases that were chosen were judged. What a renderer does not declare is chosen only where the filter has its name.
     #[must_use]
     pub fn coverage(&self) -> Coverage {
         if self.renderer.is_none() {
             let Totals { cases, skipped, .. } = self.totals;
             return Coverage { chosen: cases, judged: cases.saturating_sub(skipped), excluded: skipped };
         }
-        let CaseTotals { asked, not_asked, skipped, missing, .. } = self.cases();
+        let CaseTotals { asked, skipped, missing, .. } = self.cases();
+        let named = self.groups_not_asked().filter(|group| self.is_named(group));
+        let not_asked =
+            named.filter_map(Group::asked).fold(0, |sum: u64, one| sum.saturating_add(one.totals.not_asked));
         Coverage {
             chosen: asked.saturating_add(not_asked),
             judged: asked.saturating_sub(skipped).saturating_sub(missing),
             excluded: not_asked.saturating_add(skipped),
         }
+    }
+
+    /// How many of the formulas and scenes that the filter selects the renderer declares, and how many there are; `None` where it declares
+    /// all of them.
+    #[must_use]
+    pub fn declared(&self) -> Option<[usize; 2]> {
+        let lacking: BTreeSet<&str> = self.groups_not_asked().map(|group| group.id.as_str()).collect();
+        let is_asked = |group: &&Group| group.asked().is_some_and(|counts| counts.totals.asked > 0);
+        let asked: BTreeSet<&str> = self.groups.iter().filter(is_asked).map(|group| group.id.as_str()).collect();
+        (!lacking.is_empty()).then(|| [asked.len(), asked.union(&lacking).count()])
+    }
+
+    /// The groups that a renderer does not declare.
+    fn groups_not_asked(&self) -> impl Iterator<Item = &Group> {
+        self.groups.iter().filter(|group| group.is_not_asked())
+    }
+
+    /// Whether the filter has the name of a formula or a scene, or of a case of it.
+    #[must_use]
+    pub fn is_named(&self, group: &Group) -> bool {
+        let globs = self.compared_by.iter().flat_map(|by| &by.choice.filter);
+        let below =
+            |glob: &str| glob.strip_prefix(&group.id).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+        globs.into_iter().any(|glob| below(glob))
     }
 
     /// Whether a renderer that was asked broke off, or wrote what is no answer.

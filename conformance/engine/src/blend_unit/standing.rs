@@ -296,7 +296,7 @@ impl UnitStanding {
         for (place, &case) in chunk.cases[k].iter().enumerate() {
             if let Some(why) = unanswered.get(&place) {
                 if self.cases.unanswered((of, case), why) {
-                    self.cases.expect(&options.expected, &member.case_id(case), &on, true);
+                    self.cases.expect(&options.expected, &member.case_id(case), &on, true, |_| false);
                 }
                 continue;
             }
@@ -304,7 +304,7 @@ impl UnitStanding {
             let inputs = &piece.inputs[place * piece.stride..(place + 1) * piece.stride];
             self.cases.judged((of, case), inputs, failed > 0, 0.0, (0.0, 0));
             if !options.expected.is_empty()
-                && self.cases.expect(&options.expected, &member.case_id(case), &on, failed > 0)
+                && self.cases.expect(&options.expected, &member.case_id(case), &on, failed > 0, |_| false)
             {
                 self.expected += failed;
             }

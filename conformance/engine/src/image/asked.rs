@@ -13,7 +13,7 @@ use lightmeter_catalogue::scene::select::{Chosen, pixel_id, scene_id};
 use lightmeter_document::Number;
 use lightmeter_document::by_case::{CaseCounts, CaseTotals, FailedAnswer};
 use lightmeter_document::event::{Event, Observer};
-use lightmeter_document::report::{Failure, Group, ImageUse, Report, Totals};
+use lightmeter_document::report::{Diagnosis, Failure, Group, ImageUse, Report, Totals};
 use lightmeter_judge::cases::{Unanswered, ending};
 use lightmeter_judge::formula::unjudged;
 use lightmeter_judge::image::file::StoredImage;
@@ -83,9 +83,9 @@ impl Scene<'_> {
     }
 
     /// Notes at the expectations whether the scene failed; 1 where that was expected.
-    fn expected(&mut self, has_failed: bool) -> u64 {
+    fn expected(&mut self, has_failed: bool, found: Option<&Diagnosis>) -> u64 {
         let on = [STAGE, self.loaded.frame.target.format.name()];
-        u64::from(expect(self.report, self.options, &self.id, &on, has_failed))
+        u64::from(expect(self.report, self.options, &self.id, &on, has_failed, found))
     }
 
     /// The state of the scene's one case, where it did not pass.
@@ -113,7 +113,7 @@ impl Scene<'_> {
             Unanswered::Unjudged(message) | Unanswered::Broken(message) => {
                 (counts.totals.failed, counts.totals.unjudged) = (1, 1);
                 counts.totals.broken = u64::from(matches!(why, Unanswered::Broken(_)));
-                counts.totals.expected_failures = self.expected(true);
+                counts.totals.expected_failures = self.expected(true, None);
                 counts.not_passed = self.not_passed("failed");
                 counts.smallest = Some(self.id.clone());
                 let failure = unjudged(self.id.clone(), message, STAGE, &self.subject.identity.name);
@@ -135,16 +135,16 @@ impl Scene<'_> {
         let has_failed = verdicts.totals.failed > 0;
         let bias = if has_failed { None } else { scene.bias(image, &profile) };
         let problem = verdicts.problem().or(bias.and_then(|bias| told(&bias)));
-        let is_expected = self.expected(has_failed) > 0;
-        let mut counts = scene.counts(has_failed, is_expected);
-        if !has_failed {
-            counts.error_passing = Number(verdicts.error_max);
-        }
         let found = self
             .options
             .diagnose
             .filter(|_| has_failed)
             .map(|diagnose| diagnose.image(&self.loaded.frame, image, scene.expected(&profile), &profile));
+        let is_expected = self.expected(has_failed, found.as_ref()) > 0;
+        let mut counts = scene.counts(has_failed, is_expected);
+        if !has_failed {
+            counts.error_passing = Number(verdicts.error_max);
+        }
         if has_failed {
             let failure = self.failure(&scene, image, &judged, &profile);
             counts.smallest = Some(failure.id.clone());

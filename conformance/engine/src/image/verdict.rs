@@ -165,17 +165,17 @@ impl<'a> JudgedScene<'a> {
         let bias = if judged.misses.is_empty() { self.bias(drawn.image, &drawn.profile) } else { None };
         let problem = judged.verdicts.problem().or(bias.and_then(|bias| told(&bias)));
         let mut totals = Totals { failed_groups: u64::from(problem.is_some()), ..judged.verdicts.totals };
-        let has_failed = totals.failed > 0;
-        let on = [stage(drawn.picture), self.frame.target.format.name()];
-        if crate::expected::expect(report, drawn.options, &self.id, &on, has_failed) {
-            totals.expected_failures += std::mem::take(&mut totals.failed);
-        }
-        let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));
         let mut used = ImageUse { bias, ..self.image_use(drawn.image, expected) };
         let diagnosis = match worst(&judged) {
             Some(worst) => self.explain(drawn, named, (&judged, worst), &mut used, report)?,
             None => None,
         };
+        let has_failed = totals.failed > 0;
+        let on = [stage(drawn.picture), self.frame.target.format.name()];
+        if crate::expected::expect(report, drawn.options, &self.id, &on, has_failed, diagnosis.as_ref()) {
+            totals.expected_failures += std::mem::take(&mut totals.failed);
+        }
+        let by_case = drawn.options.counts_cases.then(|| self.counts(has_failed, totals.failed == 0));
         Ok(Group {
             error_ulp_max: Number(judged.verdicts.error_max),
             margin_max: Number(judged.worst().map_or(0.0, |worst| worst.margin)),

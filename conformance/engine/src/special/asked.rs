@@ -117,7 +117,7 @@ impl TableStanding<'_> {
 
     /// Counts a probe that failed; whether that is expected.
     fn failed(&mut self, probe: &Probe) -> bool {
-        let is_expected = expect(self.report, self.options, &probe.id(), &[Stage::Answer.name()], true);
+        let is_expected = expect(self.report, self.options, &probe.id(), &[Stage::Answer.name()], true, None);
         self.counts.totals.failed += 1;
         self.counts.totals.expected_failures += u64::from(is_expected);
         self.not_passed("failed", probe);
@@ -131,7 +131,7 @@ impl TableStanding<'_> {
         self.totals.verdicts += 1;
         let verdict = verdict(probe.promise, bits, None, false);
         if !verdict.is_failure() {
-            expect(self.report, self.options, &probe.id(), &[Stage::Answer.name()], false);
+            expect(self.report, self.options, &probe.id(), &[Stage::Answer.name()], false, None);
             self.counts.totals.passed += 1;
             let is_promised = verdict != ProbeVerdict::Indeterminate;
             let count = if is_promised { &mut self.totals.passed } else { &mut self.totals.indeterminate };

@@ -118,7 +118,7 @@ impl Table {
                 Totals { cases: of_stage.len() as u64, verdicts: of_stage.len() as u64, ..Totals::default() };
             for outcome in &of_stage {
                 let id = Probe::by_name(&outcome.probe).map(Probe::id).unwrap_or_default();
-                let is_expected = expect(report, options, &id, &[stage], outcome.verdict.is_failure());
+                let is_expected = expect(report, options, &id, &[stage], outcome.verdict.is_failure(), None);
                 match outcome.verdict {
                     ProbeVerdict::Kept => totals.passed += 1,
                     ProbeVerdict::Broken | ProbeVerdict::Changed if is_expected => totals.expected_failures += 1,

@@ -2,11 +2,14 @@
 
 use super::preset::{Free, PRESETS, Preset};
 use super::span::Span;
-use lightmeter_catalogue::cases::{Domain, Kind, Spec, Stage};
+use super::telling::{Chosen, Swept};
+use lightmeter_arithmetic::profile::PROFILES;
+use lightmeter_catalogue::cases::{Domain, Input, Kind, Spec, Stage};
 use lightmeter_catalogue::nearest::did_you_mean;
-use lightmeter_catalogue::select::Member;
+use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_document::sweep::ExactFloat;
-use lightmeter_scene::along::{float_of, key_of};
+use lightmeter_scene::along::key_of;
+use std::ops::Range;
 
 /// What was asked for; what is missing is the preset's, or follows from the formula.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,6 +53,8 @@ pub enum Over {
         to: f32,
         /// The output's place.
         output: usize,
+        /// Whether the row was drawn, since the output hardly depends on the free number where the others are in the middle.
+        is_drawn: bool,
     },
     /// 256 × 256 × 256 bytes through the blend unit.
     Bytes,
@@ -57,11 +62,17 @@ pub enum Over {
 
 /// Why nothing can be swept, and what would be right.
 #[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct Refused(String);
+pub enum Refused {
+    /// What was asked for is no sweep.
+    #[error("{0}")]
+    Wrong(String),
+    /// No output that may be chosen depends on the free number, so that there is nothing to judge.
+    #[error("{0}")]
+    Independent(String),
+}
 
 fn refuse<T>(message: String) -> Result<T, Refused> {
-    Err(Refused(message))
+    Err(Refused::Wrong(message))
 }
 
 impl<'a> SweepPlan<'a> {
@@ -102,7 +113,7 @@ impl<'a> SweepPlan<'a> {
                  arithmetic, as fog/exp"
             ));
         }
-        Ok(Self { member, stage: asked.stage.unwrap_or(Stage::Compute), over: number(&member.spec, preset, asked)? })
+        Ok(Self { member, stage: asked.stage.unwrap_or(Stage::Compute), over: number(member, preset, asked)? })
     }
 
     fn of_unit(member: &'a Member, asked: &Asked) -> Result<Self, Refused> {
@@ -142,6 +153,22 @@ impl<'a> SweepPlan<'a> {
         }
     }
 
+    /// What `--set` is given so that the same row is swept again: nothing where it follows from what was asked for.
+    #[must_use]
+    pub fn drawn(&self) -> Vec<(String, Vec<f32>)> {
+        let Over::Number { free, row, is_drawn: true, .. } = &self.over else { return vec![] };
+        let spec = &self.member.spec;
+        let of_input = |input: &Input| {
+            let place = spec.place(input.name)?;
+            let each = |k: usize| (spec.input_name(k), vec![row[k]]);
+            Some(match place.contains(free) {
+                true => place.filter(|k| k != free).map(each).collect::<Vec<_>>(),
+                false => vec![(input.name.to_owned(), row[place].to_vec())],
+            })
+        };
+        spec.inputs.iter().filter_map(of_input).flatten().collect()
+    }
+
     /// The numbers that are fixed, by name.
     #[must_use]
     pub fn fixed(&self) -> Vec<(String, ExactFloat)> {
@@ -165,7 +192,8 @@ fn names(spec: &Spec) -> Vec<String> {
     (0..spec.input_len()).map(|k| spec.input_name(k)).collect()
 }
 
-fn number(spec: &Spec, preset: Option<Free>, asked: &Asked) -> Result<Over, Refused> {
+fn number(member: &Member, preset: Option<Free>, asked: &Asked) -> Result<Over, Refused> {
+    let spec = &member.spec;
     let preset = preset.and_then(|free| match free {
         Free::Number { over, from, to, set, output } => Some((over, from, to, set, output)),
         Free::Bytes => None,
@@ -178,7 +206,7 @@ fn number(spec: &Spec, preset: Option<Free>, asked: &Asked) -> Result<Over, Refu
         return refuse(format!("--over `{over}`: {} has no such number; expected one of {}", spec.id, names.join(" ")));
     };
     let ready = preset.filter(|(name, ..)| *name == over);
-    let (from, to) = range(spec, free, ready.map(|(_, from, to, ..)| (from, to)), asked)?;
+    let (from, to) = range(member, free, ready.map(|(_, from, to, ..)| (from, to)), asked)?;
 
     let mut row = vec![];
     spec.inputs.iter().for_each(|input| input.middle(&mut row));
@@ -188,35 +216,52 @@ fn number(spec: &Spec, preset: Option<Free>, asked: &Asked) -> Result<Over, Refu
         }
     }
     for (name, values) in &asked.set {
-        let place = spec.place(name).or_else(|| names.iter().position(|other| other == name).map(|k| k..k + 1));
-        let Some(place) = place else {
-            return refuse(format!(
-                "--set `{name}`: {} has no such input; expected one of {}",
-                spec.id,
-                names.join(" ")
-            ));
-        };
-        if place.contains(&free) && place.len() == 1 {
-            return refuse(format!("--set `{name}`: the sweep is over {over}, which --from and --to bound"));
-        }
-        if values.len() != 1 && values.len() != place.len() {
-            let (given, expected) = (values.len(), place.len());
-            return refuse(format!("--set `{name}`: {given} values; expected one or {expected}"));
-        }
-        fill(&mut row[place], values);
+        fill(&mut row[set_place(spec, &names, name, values, free)?], values);
     }
     row[free] = from;
 
     let outputs: Vec<String> = (0..spec.output_len()).map(|k| spec.output_name(k)).collect();
-    let output = asked.output.as_deref().or(preset.map(|(.., output)| output)).unwrap_or(&outputs[0]);
-    let Some(output) = outputs.iter().position(|name| name == output) else {
-        return refuse(format!(
-            "--output `{output}`: {} has no such output; expected one of {}",
-            spec.id,
-            outputs.join(" ")
-        ));
+    let named = asked.output.as_deref().or(ready.and(preset).map(|(.., output)| output));
+    let outputs = match named {
+        None => (0..outputs.len()).collect(),
+        Some(named) => {
+            let Some(output) = outputs.iter().position(|name| name == named) else {
+                return refuse(format!(
+                    "--output `{named}`: {} has no such output; expected one of {}",
+                    spec.id,
+                    outputs.join(" ")
+                ));
+            };
+            vec![output]
+        }
     };
-    Ok(Over::Number { free, row, from, to, output })
+    let swept = Swept { member, free, from, to, outputs, profile: PROFILES[0], is_ready: ready.is_some() };
+    let chosen = swept.choose(row, |row| {
+        for (name, values) in &asked.set {
+            if let Ok(place) = set_place(spec, &names, name, values, free) {
+                fill(&mut row[place], values);
+            }
+        }
+    });
+    let Chosen { row, output, is_drawn } = chosen.map_err(Refused::Independent)?;
+    Ok(Over::Number { free, row, from, to, output, is_drawn })
+}
+
+/// Where a number or an input that is given stands in the row.
+fn set_place(spec: &Spec, names: &[String], name: &str, values: &[f32], free: usize) -> Result<Range<usize>, Refused> {
+    let place = spec.place(name).or_else(|| names.iter().position(|other| other == name).map(|k| k..k + 1));
+    let Some(place) = place else {
+        return refuse(format!("--set `{name}`: {} has no such input; expected one of {}", spec.id, names.join(" ")));
+    };
+    if place.contains(&free) && place.len() == 1 {
+        let over = &names[free];
+        return refuse(format!("--set `{name}`: the sweep is over {over}, which --from and --to bound"));
+    }
+    if values.len() != 1 && values.len() != place.len() {
+        let (given, expected) = (values.len(), place.len());
+        return refuse(format!("--set `{name}`: {given} values; expected one or {expected}"));
+    }
+    Ok(place)
 }
 
 fn fill(numbers: &mut [f32], values: &[f32]) {
@@ -225,7 +270,8 @@ fn fill(numbers: &mut [f32], values: &[f32]) {
     }
 }
 
-fn range(spec: &Spec, free: usize, ready: Option<(f32, f32)>, asked: &Asked) -> Result<(f32, f32), Refused> {
+fn range(member: &Member, free: usize, ready: Option<(f32, f32)>, asked: &Asked) -> Result<(f32, f32), Refused> {
+    let spec = &member.spec;
     let input = spec.inputs.iter().find(|input| spec.place(input.name).is_some_and(|place| place.contains(&free)));
     let usual = ready.or(match input.map(|input| input.domain) {
         Some(Domain::Uniform(low, high) | Domain::LogUniform(low, high) | Domain::Halves(low, high)) => {
@@ -233,11 +279,11 @@ fn range(spec: &Spec, free: usize, ready: Option<(f32, f32)>, asked: &Asked) -> 
         }
         Some(Domain::Unit | Domain::Weights) => Some((0.0, 1.0)),
         Some(Domain::Direction) => Some((-1.0, 1.0)),
-        _ => None,
+        _ => drawn_range(member, free),
     });
     let end = |given: Option<f32>, usual: Option<f32>, option: &str| {
         let end = given.or(usual);
-        end.ok_or_else(|| Refused(format!("{} has no usual range; expected {option}", spec.input_name(free))))
+        end.ok_or_else(|| Refused::Wrong(format!("{} has no usual range; expected {option}", spec.input_name(free))))
     };
     let from = end(asked.from, usual.map(|(from, _)| from), "--from")?;
     let to = end(asked.to, usual.map(|(_, to)| to), "--to")?;
@@ -251,10 +297,16 @@ fn range(spec: &Spec, free: usize, ready: Option<(f32, f32)>, asked: &Asked) -> 
     Ok(if key_of(from) > key_of(to) { (to, from) } else { (from, to) })
 }
 
-/// The float of a number in a range.
-#[must_use]
-pub(super) fn input(from: f32, number: u64) -> f32 {
-    float_of(key_of(from) + u32::try_from(number).unwrap_or(u32::MAX))
+/// From where to where a number is drawn.
+fn drawn_range(member: &Member, free: usize) -> Option<(f32, f32)> {
+    let drawn = |k: u64| {
+        let mut row = vec![];
+        member.inputs(CaseRef::Random(k), 1, &mut row);
+        row[free]
+    };
+    let all = (0..256).map(drawn).filter(|x| x.is_finite());
+    let (low, high) = all.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    (low < high).then_some((low, high))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! All inputs of a sweep as numbers, cut into blocks, and which blocks a shard has.
 
 use lightmeter_catalogue::select::Shard;
+use lightmeter_scene::along::{float_of, key_of};
 
 /// The most inputs of a block, which take a device about a fifth of a second.
 const MOST: u64 = 1 << 22;
@@ -51,6 +52,12 @@ impl Span {
         let Some(last) = blocks.checked_sub(1) else { return 0 };
         last * self.block + self.block_of(shard, last).1
     }
+}
+
+/// The float of a number in a range.
+#[must_use]
+pub(super) fn input(from: f32, number: u64) -> f32 {
+    float_of(key_of(from) + u32::try_from(number).unwrap_or(u32::MAX))
 }
 
 #[cfg(test)]

@@ -120,7 +120,7 @@ fn cell(group: &Group) -> (&'static str, String, String) {
 
 /// Why a group is no cell of its subject: it was not asked, since the subject does not have it.
 fn not_had(group: &Group) -> Option<String> {
-    let counts = group.by_case.as_ref().filter(|counts| counts.totals.asked == 0 && counts.totals.not_asked > 0)?;
+    let counts = group.asked().filter(|_| group.is_not_asked())?;
     let reason = counts.reason.as_deref().or(group.skip_reason.as_deref()).unwrap_or("no reason was given");
     Some(format!("not asked: {reason}"))
 }

@@ -1,5 +1,6 @@
 //! Whether a result passes, and the sentences that say why not: as the exit code of the command that wrote it has it.
 
+use crate::against;
 use lightmeter_document::by_case::{CaseTotals, Coverage};
 use lightmeter_document::cases;
 use lightmeter_document::report::Report;
@@ -26,6 +27,7 @@ impl Verdict {
         });
         let mut sentences = ended(report);
         sentences.push(counted(report, is_right));
+        sentences.extend(against::declared(report).map(|said| said.replacen("the", "The", 1) + "."));
         sentences.extend(wrong(report));
         let warnings = report.renderer.iter().flat_map(|renderer| &renderer.warnings);
         sentences.extend(warnings.map(|warning| format!("Warning: {warning}.")));
@@ -258,8 +260,7 @@ mod tests {
     fn known_failures_that_pass_fail() {
         let (is_success, sentences) = said(group([9, 0, 0, 0, 0]), |report| {
             let (id, reason) = ("fog/*".to_owned(), "a reason".to_owned());
-            report.expectations =
-                vec![KnownFailure { id, reason, on: None, failed: 0, passed: 9, crash: false, may_pass: false }];
+            report.expectations = vec![KnownFailure { id, reason, passed: 9, ..KnownFailure::default() }];
         });
         assert!(
             !is_success && sentences.ends_with("One known failure passes that is expected to fail."),

@@ -130,8 +130,12 @@ pub(crate) fn is_told_by(group: &Group, failure: &Failure) -> bool {
 
 /// What went wrong with a renderer apart from its answers.
 fn process(renderer: &RendererUse, out: &mut impl Write) -> Result {
-    listed("crashes and hangs are expected", &renderer.expected_incidents, out)?;
-    listed("went wrong with the process", &renderer.incidents, out)?;
+    for (what, all) in [
+        ("crashes and hangs are expected", &renderer.expected_incidents),
+        ("went wrong with the process", &renderer.incidents),
+    ] {
+        listed(all.len() as u64, what, all, out)?;
+    }
     problems(&renderer.problems, out)?;
     renderer.warnings.iter().try_for_each(|warning| writeln!(out, "\nwarning: {warning}"))
 }
@@ -199,13 +203,11 @@ fn cases_told(report: &Report, level: Level, out: &mut impl Write) -> Result {
     }
     let Coverage { chosen, judged, excluded } = report.coverage();
     if excluded > 0 {
-        let why = match totals.not_asked {
-            0 => String::new(),
-            all if all == excluded => ", which the renderer does not declare or excludes".into(),
-            some => format!(", {} of which the renderer does not declare or excludes", thousands(some)),
-        };
         let [chosen, judged, excluded] = [chosen, judged, excluded].map(thousands);
-        writeln!(out, "of {chosen} chosen cases {judged} were judged and {excluded} excluded{why}")?;
+        writeln!(out, "of {chosen} chosen cases {judged} were judged and {excluded} excluded")?;
+    }
+    if let Some(declared) = against::declared(report) {
+        writeln!(out, "{declared}")?;
     }
     let undecided = report.totals.indeterminate;
     if level == Level::Verbose && undecided > 0 {

@@ -10,7 +10,7 @@ use std::fmt::{Result, Write};
 
 pub(super) fn notes(report: &Report, level: Level, out: &mut impl Write) -> Result {
     deviations(report, level, out)?;
-    skips(report, out)?;
+    skips(report, level, out)?;
     if level > Level::Quiet {
         legal_biases(report, out)?;
     }
@@ -63,10 +63,12 @@ fn deviations(report: &Report, level: Level, out: &mut impl Write) -> Result {
     Ok(())
 }
 
-/// What was skipped, with the reason that several groups have in common.
-fn skips(report: &Report, out: &mut impl Write) -> Result {
+/// What was skipped, with the reason that several groups have in common. What a renderer does not declare is only counted elsewhere, but where
+/// it was asked for by name.
+fn skips(report: &Report, level: Level, out: &mut impl Write) -> Result {
+    let is_told = |group: &Group| level == Level::Verbose || !group.is_not_asked() || report.is_named(group);
     let mut groups = BTreeMap::<_, Vec<&str>>::new();
-    for group in report.groups.iter() {
+    for group in report.groups.iter().filter(|group| is_told(group)) {
         if let Some(reason) = &group.skip_reason {
             groups.entry((&group.adapter, group.place(), reason)).or_default().push(&group.id);
         }
