@@ -317,7 +317,7 @@ mod tests {
             ),
             (
                 "[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = \"fog-radail\"",
-                "expected[0] `fog`: there is no mistake `fog-radail`; did you mean `fog-radial`?",
+                "expected[0] `fog`: there is no mistake `fog-radail`; did you mean `fog-radial`",
             ),
             ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = []", "`mistake` is an empty list"),
             ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = 5", "expected a mistake such as"),
