@@ -11,6 +11,7 @@ use crate::{Outcome, judge, telling, worse};
 use lightmeter_arithmetic::{Accept, Profile};
 use lightmeter_catalogue::cases::{Kind, Stage};
 use lightmeter_catalogue::select::{CaseRef, Member};
+use lightmeter_document::adapters::Deviation;
 use lightmeter_document::by_case::FailedAnswer;
 use lightmeter_document::report::{Failure, WorstAnswer};
 use lightmeter_document::{Number, Word};
@@ -222,6 +223,7 @@ fn judge_values(
     let tally = &mut standing.tally;
     let (failed, pardoned) = (tally.totals.failed, tally.totals.expected_failures);
     let (mut greatest, mut errors) = (0.0, (0.0, 0));
+    let mut granted = None;
     tally.totals.cases += 1;
     for (output, at) in range.clone().enumerate() {
         if member.missing.contains(&output) {
@@ -230,7 +232,12 @@ fn judge_values(
         let (bits, reference) = (words[at], chunk.references[at]);
         let verdict = judge(bits, reference, &legal[output]);
         let excused = match verdict.outcome {
-            Outcome::Fail => excuse(chunk, case, output, bits, stage, by),
+            Outcome::Fail => {
+                let granted = granted.get_or_insert_with(|| granted_at(chunk, case, stage, by));
+                let excuses =
+                    |(_, legal): &&(&str, Vec<Accept>)| judge(bits, reference, &legal[output]).outcome == Outcome::Pass;
+                granted.iter().find(excuses).map(|(name, _)| *name)
+            }
             _ => None,
         };
         let is_first = tally.totals.failed == failed;
@@ -299,23 +306,16 @@ const fn is_arithmetic(member: &Member, stage: Stage) -> bool {
     }
 }
 
-/// The named deviation that makes a value legal, if one does.
-fn excuse(
-    chunk: &Chunk<'_>,
-    case: usize,
-    output: usize,
-    bits: u32,
-    stage: Stage,
-    by: &Judging<'_>,
-) -> Option<&'static str> {
+/// What each named deviation makes legal of a case's outputs.
+fn granted_at(chunk: &Chunk<'_>, case: usize, stage: Stage, by: &Judging<'_>) -> Vec<(&'static str, Vec<Accept>)> {
     let member = chunk.members[chunk.of[case]];
-    by.known.deviations.iter().find_map(|deviation| {
+    let of_deviation = |deviation: &&'static Deviation| {
         let mut legal = vec![Accept::ANY; member.spec.output_len()];
         let granted = grant(deviation, *by.profile);
         intervals(member, chunk.inputs_of(case), stage, by.known, &granted, &mut legal);
-        let reference = chunk.references[case * legal.len() + output];
-        (judge(bits, reference, &legal[output]).outcome == Outcome::Pass).then_some(&*deviation.name)
-    })
+        (&*deviation.name, legal)
+    };
+    by.known.deviations.iter().map(of_deviation).collect()
 }
 
 /// A row that was not judged here, with the reference and what is legal worked out.

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 
 /// Options that a playground has no use for: it judges what is typed.
-const PLAYGROUND_LACKS: [&str; 29] = [
+const PLAYGROUND_LACKS: [&str; 30] = [
     "filter",
     "blend",
     "target",
@@ -36,6 +36,7 @@ const PLAYGROUND_LACKS: [&str; 29] = [
     "no_samples",
     "expect",
     "baseline",
+    "across",
     "growth",
     "update_baseline",
     "require",
