@@ -356,7 +356,8 @@ fn a_record_of_special_values_is_read_again() {
 #[test]
 fn a_document_that_departs_from_its_schema_is_told() {
     type Change = (&'static str, fn(&mut Value));
-    let (_, written) = read_and_written::<SweepDocument>(&["sweep", "fog/exp", "--adapter", "cpu", "--from", "1", "--to", "1.0001"]);
+    let (_, written) =
+        read_and_written::<SweepDocument>(&["sweep", "fog/exp", "--adapter", "cpu", "--from", "1", "--to", "1.0001"]);
     let schema = schema("lightmeter.sweep/1");
     let changes: [Change; 5] = [
         ("no done", |document| drop(document.as_object_mut().and_then(|all| all.remove("done")))),
