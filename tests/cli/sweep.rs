@@ -424,6 +424,11 @@ fn a_sweep_is_along_a_row_that_tells_something() {
 fn a_sweep_that_judges_nothing_is_no_success() {
     for (sweep, said) in [
         (&["fog/exp", "--over", "p.x"][..], "no output of fog/exp depends on p.x"),
+        (
+            &["fog/exp", "--over", "p.x", "--from", "1", "--to", "1.000001"],
+            "no output of fog/exp depends on p.x from 1",
+        ),
+        (&["fog/exp", "--from", "1e-9", "--to", "1.0001e-9"], "twice the input would be legal too"),
         (&["fog/exp", "--set", "density=0"], "does not depend on p.z"),
         (
             &["fog/exp", "--output", "color.g", "--set", "fog=0.5", "--set", "shaded=0.5"],

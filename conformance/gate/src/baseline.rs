@@ -114,6 +114,11 @@ impl ComparedGroup {
         }
     }
 
+    /// What tells its cases from others: its name, or its id where adapters are compared, one of which may lack a stage.
+    fn key(&self, across: bool) -> &str {
+        if across { &self.group.id } else { &self.name }
+    }
+
     /// What it is called whoever computed it.
     fn across(&self) -> String {
         format!("{}, {}", self.group.id, self.group.place())
@@ -206,8 +211,8 @@ pub enum BaselineError {
     },
     /// It is of another adapter or renderer.
     #[error(
-        "{} is a result of {before}, and this is one of {now}; a baseline is of the same adapters or the same renderer, and `--across` compares \
-         one with another, formula by formula",
+        "{} is a result of {before}, and this is one of {now}; a baseline is of the same adapters or the same renderer. `--across` of `run` and \
+         `gate` compares one with another, formula by formula",
         .path.display()
     )]
     Subjects {
@@ -220,7 +225,7 @@ pub enum BaselineError {
     },
     /// One is to be compared with another, and there are several.
     #[error(
-        "{} is a result of {before}, and this is one of {now}; with `--across` each must be of one adapter: choose it by `--adapter`",
+        "{} is a result of {before}, and this is one of {now}; with `--across` each must be of one adapter",
         .path.display()
     )]
     Several {
@@ -328,8 +333,8 @@ impl Baseline {
         (is_shard, across): (bool, bool),
         path: &Path,
     ) -> Result<Vec<String>, BaselineError> {
-        let asked = now.groups.iter().map(|group| (group.name.as_str(), group.counts.totals.asked));
-        self.is_of(&now.choice, asked, Some(&now.profile), path)?;
+        let asked = now.groups.iter().map(|group| (group.key(across), group.counts.totals.asked));
+        self.is_of(&now.choice, (asked, across), Some(&now.profile), path)?;
         if self.0.shard.is_some() && self.0.shard != now.shard {
             let [before, now] = [&self.0.shard, &now.shard].map(|shard| shard.as_deref().unwrap_or("1/1"));
             let differences = vec![format!("shard {before} there, {now} here")];
@@ -360,10 +365,12 @@ impl Baseline {
 
     /// What is better in a result, and what is there that was not.
     #[must_use]
-    pub fn progress(&self, now: &Standard) -> (Vec<String>, Vec<String>) {
+    pub fn progress(&self, now: &Standard, across: bool) -> (Vec<String>, Vec<String>) {
         let (mut mended, mut added) = (vec![], vec![]);
-        for ComparedGroup { name, counts: now, .. } in now.groups.iter().filter(|group| group.counts.totals.asked > 0) {
-            let Some(ComparedGroup { counts: before, .. }) = self.0.groups.iter().find(|group| group.name == *name)
+        let called = |group: &ComparedGroup| if across { group.across() } else { group.name.clone() };
+        for group in now.groups.iter().filter(|group| group.counts.totals.asked > 0) {
+            let (ComparedGroup { name, counts: now, .. }, own) = (group, called(group));
+            let Some(ComparedGroup { counts: before, .. }) = self.0.groups.iter().find(|group| called(group) == own)
             else {
                 added.push(format!("{name}: {} cases", now.totals.asked));
                 continue;
@@ -385,15 +392,15 @@ impl Baseline {
         before == now
     }
 
-    /// Checks that the baseline has the chosen cases: `asked` gives the id of each group and its number of cases. The profile is compared
-    /// where it is known already.
+    /// Checks that the baseline has the chosen cases: `asked` gives the name of each group and its number of cases, or the id where one adapter
+    /// is compared with another. The profile is compared where it is known already.
     ///
     /// # Errors
     /// What differs.
     pub fn is_of<'a>(
         &self,
         now: &Choice,
-        asked: impl Iterator<Item = (&'a str, u64)>,
+        (asked, across): (impl Iterator<Item = (&'a str, u64)>, bool),
         profile: Option<&String>,
         path: &Path,
     ) -> Result<(), BaselineError> {
@@ -414,8 +421,11 @@ impl Baseline {
         }
         if !self.has_filter_of(now) {
             // What the renderer did not declare then has no cases there, and may have some now.
-            let known: HashMap<&str, u64> =
-                self.0.groups.iter().map(|group| (group.name.as_str(), group.counts.totals.asked)).collect();
+            let mut known = HashMap::<&str, u64>::new();
+            for group in &self.0.groups {
+                let most = known.entry(group.key(across)).or_default();
+                *most = group.counts.totals.asked.max(*most);
+            }
             let lacks = |(id, asked): &(&str, u64)| known.get(id).is_none_or(|before| (1..*asked).contains(before));
             let mut missing = asked.filter(lacks).map(|(id, _)| id);
             if let Some(first) = missing.next() {

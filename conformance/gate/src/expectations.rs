@@ -146,7 +146,7 @@ impl Expectations {
             let filter = Filter::new(std::slice::from_ref(&written.id)).map_err(|error| error.to_string())?;
             // A known failure fails, whatever it is of: what may pass besides leaves nothing to be judged.
             match refused(&filter, &written.reason) {
-                Some(why) if written.may_pass || written.reason.trim().is_empty() => {
+                Some(why) if written.may_pass && written.mistake.is_empty() || written.reason.trim().is_empty() => {
                     return Err(format!("expected[{k}] `{}` {why}", written.id));
                 }
                 _ => {}
@@ -156,6 +156,12 @@ impl Expectations {
                 return Err(format!(
                     "expected[{k}].on `{on}` is no stage and no target; expected {}",
                     places.join(", ")
+                ));
+            }
+            if written.crash && !written.mistake.is_empty() {
+                return Err(format!(
+                    "expected[{k}] `{}` has `crash` and `mistake`; a crash is no answer that a mistake gives: write two entries",
+                    written.id
                 ));
             }
             let versions = versions(written.version.as_deref(), &format!("expected[{k}]"))?;
@@ -240,7 +246,8 @@ pub fn told_ids(ids: Vec<&str>, what: &str) -> Option<String> {
 
 /// Refuses entries that leave nothing to be judged together: those that may pass, of any renderer and of one by name.
 fn nothing_is_left(written: &[ReadFailure]) -> Result<(), String> {
-    let may_pass: Vec<&ReadFailure> = written.iter().filter(|one| one.written.may_pass).collect();
+    let is_open = |one: &&ReadFailure| one.written.may_pass && one.written.mistake.is_empty();
+    let may_pass: Vec<&ReadFailure> = written.iter().filter(is_open).collect();
     for one in may_pass.iter().map(|one| &one.written) {
         let concerns = |other: &Written| other.renderer.is_none() || other.renderer == one.renderer;
         let together = may_pass.iter().filter(|other| concerns(&other.written)).map(|other| &other.filter);
@@ -318,6 +325,10 @@ mod tests {
             (
                 "[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = \"fog-radail\"",
                 "expected[0] `fog`: there is no mistake `fog-radail`; did you mean `fog-radial`",
+            ),
+            (
+                "[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = \"fog-radial\"\ncrash = true",
+                "expected[0] `fog` has `crash` and `mistake`",
             ),
             ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = []", "`mistake` is an empty list"),
             ("[[expected]]\nid = \"fog\"\nreason = \"r\"\nmistake = 5", "expected a mistake such as"),

@@ -63,7 +63,7 @@ impl Earlier {
 
     /// What is better now, and what is new.
     pub(crate) fn progress(&self, now: &Standard) -> (Vec<String>, Vec<String>) {
-        self.baseline.progress(now)
+        self.baseline.progress(now, self.across)
     }
 }
 

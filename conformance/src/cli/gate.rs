@@ -121,7 +121,8 @@ impl Gate {
         let (plan, answers) = self.asked()?;
         if let Some(Earlier { baseline, path, .. }) = &earlier {
             let counts = plan.counts();
-            baseline.is_of(&plan.choice, counts.iter().map(|(id, count)| (id.as_str(), *count)), None, path)?;
+            let asked = counts.iter().map(|(id, count)| (id.as_str(), *count));
+            baseline.is_of(&plan.choice, (asked, false), None, path)?;
         }
         writable(self.out.as_deref())?;
         let [expect, baseline] = self.comparison.files();

@@ -159,7 +159,12 @@ impl Run {
         self.also_json.is_writable([("out", self.out.as_deref()), ("expect", expect), ("baseline", baseline)])?;
         let compared_by = self.compared_by(&options);
         if let Some(Earlier { baseline, path, .. }) = &earlier {
-            baseline.is_of(&compared_by.choice, std::iter::empty(), Some(&options.profile.name.into()), path)?;
+            baseline.is_of(
+                &compared_by.choice,
+                (std::iter::empty(), false),
+                Some(&options.profile.name.into()),
+                path,
+            )?;
         }
         Ok(Prepared { expectations, earlier, options, compared_by, is_shard: shard.count.get() > 1 })
     }

@@ -211,13 +211,13 @@ impl Diagnosis {
         self.explanations.first().into_iter().chain(of_parts).flat_map(|best| best.mistakes.iter().cloned()).collect()
     }
 
-    /// Whether one of its explanations accounts for all that was looked at, by some of these mistakes and nothing else.
+    /// Whether everything that fails was looked at, and one of its explanations accounts for all of it, by some of these mistakes and nothing else.
     #[must_use]
     pub fn is_all_by(&self, mistakes: &[String]) -> bool {
         let is_one = |name: &Word| mistakes.iter().any(|known| known == &**name);
         self.explanations.iter().any(|one| {
             let is_by = !one.mistakes.is_empty() && one.mistakes.iter().all(is_one) && one.parameter.is_none();
-            is_by && one.explained == self.looked_at
+            is_by && one.explained == self.looked_at && self.looked_at == self.failing
         })
     }
 

@@ -51,9 +51,9 @@ impl Swept<'_> {
             Some((told, Chosen { row, output, is_drawn }))
         };
         let first = of(given, false).ok_or_else(|| "the formula has no output".to_owned())?;
-        let floats = u64::from(key_of(self.to) - key_of(self.from));
         let least = if self.is_ready { 1 } else { PLACES / 4 };
-        if first.0 >= least || floats < PLACES as u64 {
+        // One input alone is swept again of a longer sweep, along its row.
+        if first.0 >= least || key_of(self.to) == key_of(self.from) {
             return Ok(first.1);
         }
         let drawn = |k: u64| {
@@ -75,7 +75,7 @@ impl Swept<'_> {
                 break;
             }
         }
-        Ok(best.1)
+        if best.0 == 0 { Err(self.is_silent()) } else { Ok(best.1) }
     }
 
     /// Numbers of the range: half of them evenly among its floats, half evenly among its values.
@@ -112,14 +112,28 @@ impl Swept<'_> {
 
     fn is_independent(&self) -> String {
         let spec = &self.member.spec;
-        let over = spec.input_name(self.free);
         let which = match self.outputs[..] {
-            [one] => format!("output {} of {}", spec.output_name(one), spec.id),
-            _ => format!("no output of {}", spec.id),
+            [one] => format!("output {} of {} does not depend", spec.output_name(one), spec.id),
+            _ => format!("no output of {} depends", spec.id),
         };
-        let does = if self.outputs.len() == 1 { "does not depend" } else { "depends" };
+        format!("{which} on {}", self.along_what())
+    }
+
+    /// That nothing would be seen of an implementation that reads the free number doubled.
+    fn is_silent(&self) -> String {
+        let spec = &self.member.spec;
+        let which = match self.outputs[..] {
+            [one] => format!("output {} of {} hardly depends", spec.output_name(one), spec.id),
+            _ => format!("no output of {} depends enough", spec.id),
+        };
+        format!("{which} on {}: twice the input would be legal too", self.along_what())
+    }
+
+    fn along_what(&self) -> String {
+        let (over, from, to) = (self.member.spec.input_name(self.free), self.from, self.to);
         format!(
-            "{which} {does} on {over} with these inputs; sweep another number by --over, or give other inputs by --set"
+            "{over} from {from} to {to} with these inputs; sweep another range by --from and --to, another number by --over, or give other \
+             inputs by --set"
         )
     }
 }
