@@ -15,9 +15,6 @@ use serde::{Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Expectations that are named in a line.
-const MOST_NAMED: usize = 5;
-
 /// A known failure, as the file has it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -222,7 +219,9 @@ impl Expectations {
             is_of_none(&|name, version| is_of((skip.renderer.as_ref(), range.as_ref()), name, version))
         });
         let ids = failures.map(|one| &one.written.id).chain(skips.map(|(skip, ..)| &skip.id));
-        told_ids(ids.map(String::as_str).collect(), "of another renderer or version than this")
+        let ids: Vec<String> = ids.map(|id| format!("`{id}`")).collect();
+        let are = if ids.len() == 1 { "1 expectation is".into() } else { format!("{} expectations are", ids.len()) };
+        (!ids.is_empty()).then(|| format!("{are} of another renderer or version than this: {}", ids.join(", ")))
     }
 
     /// The cases that a renderer is known to skip.
@@ -233,15 +232,6 @@ impl Expectations {
         };
         self.skipped.iter().filter(concerns).map(|(_, filter, _)| filter.clone()).collect()
     }
-}
-
-/// A line on expectations that have something in common.
-pub fn told_ids(ids: Vec<&str>, what: &str) -> Option<String> {
-    let (named, more) = ids.split_at(ids.len().min(MOST_NAMED));
-    let named: Vec<String> = named.iter().map(|id| format!("`{id}`")).collect();
-    let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-    let are = if ids.len() == 1 { "expectation is" } else { "expectations are" };
-    (!ids.is_empty()).then(|| format!("{} {are} {what}: {}{more}", ids.len(), named.join(", ")))
 }
 
 /// Refuses entries that leave nothing to be judged together: those that may pass, of any renderer and of one by name.

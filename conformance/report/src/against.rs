@@ -79,12 +79,22 @@ pub(crate) fn text(report: &Report, out: &mut impl Write) -> Result {
             one.id, one.failed, one.passed, one.reason
         )?;
     }
+    unused(report).iter().try_for_each(|said| writeln!(out, "\nnote: {said}"))?;
     for group in &report.groups {
         if let Some(problem) = group.expected_problem() {
             writeln!(out, "\nas expected: {}: {problem}", group.name())?;
         }
     }
     Ok(())
+}
+
+/// A line on known failures none of whose cases passed, or failed as expected. What was judged of a shard, or of an interrupted run, is a part.
+pub(crate) fn unused(report: &Report) -> Option<String> {
+    let is_part = report.interrupted.is_some() || report.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
+    let is_unused = |one: &&KnownFailure| !is_part && !one.crash && one.failed + one.passed == 0;
+    let ids: Vec<String> = report.expectations.iter().filter(is_unused).map(|one| format!("`{}`", one.id)).collect();
+    let said = "none of these known failures has a case that was judged, or that fails as it says";
+    (!ids.is_empty()).then(|| format!("{said}: {}", ids.join(", ")))
 }
 
 /// What a renderer has of what was chosen, in one line; nothing where it has all.
@@ -109,5 +119,24 @@ pub(crate) fn listed(count: u64, what: &str, named: &[String], out: &mut impl Wr
     match count.saturating_sub(named.len() as u64) {
         0 => Ok(()),
         more => writeln!(out, "  and {} more", thousands(more)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightmeter_document::by_case::ComparedBy;
+
+    #[test]
+    fn known_failures_of_which_nothing_was_judged_are_told_of_a_whole() {
+        let known = |id: &str, failed, crash| KnownFailure { id: id.into(), failed, crash, ..KnownFailure::default() };
+        let mut report = Report::empty(1, "wgsl".into(), vec![], vec![]);
+        report.expectations = vec![known("fog/exp", 0, false), known("fog/linear", 2, false), known("depth", 0, true)];
+        let mut said = String::new();
+        text(&report, &mut said).expect("a string takes it");
+        assert!(said.contains("note: none of these known failures") && said.ends_with(": `fog/exp`\n"), "{said}");
+        // Another shard may have its cases.
+        report.compared_by = Some(ComparedBy { shard: Some("1/2".into()), ..ComparedBy::default() });
+        assert_eq!(unused(&report), None);
     }
 }

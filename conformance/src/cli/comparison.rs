@@ -3,10 +3,9 @@
 use super::say;
 use anyhow::bail;
 use clap::Args;
-use lightmeter::document::by_case::KnownFailure;
-use lightmeter::document::report::{Report, Sentence};
+use lightmeter::document::report::Report;
 use lightmeter::gate::baseline::{self, Baseline, BaselineError, Standard, Subjects};
-use lightmeter::gate::expectations::{Expectations, told_ids};
+use lightmeter::gate::expectations::Expectations;
 use lightmeter::gate::plan::unmatched;
 use std::path::{Path, PathBuf};
 
@@ -107,18 +106,4 @@ pub(crate) fn matches_something(expectations: &Expectations) -> anyhow::Result<(
         Some(id) => bail!("the expectation `{id}` matches no case of any formula and no scene: see `lightmeter list`"),
         None => Ok(()),
     }
-}
-
-/// What of the expectations concerns nothing that was judged, each in a line: entries of other renderers, given by name and version, and entries
-/// none of whose cases was.
-pub(crate) fn unused(expectations: &Expectations, subjects: &[(&str, &str)], report: &Report) -> Vec<Sentence> {
-    // What was judged of a shard, or of an interrupted run, is a part.
-    let is_part = report.interrupted.is_some() || report.compared_by.as_ref().is_some_and(|by| by.shard.is_some());
-    let is_unseen = |one: &&KnownFailure| !is_part && !one.crash && one.failed + one.passed == 0;
-    let unseen = report.expectations.iter().filter(is_unseen).map(|one| one.id.as_str()).collect();
-    let lines = [
-        expectations.of_others(subjects),
-        told_ids(unseen, "of cases that were not judged, or that fail by something else"),
-    ];
-    lines.into_iter().flatten().map(Sentence::from).collect()
 }

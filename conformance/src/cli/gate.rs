@@ -1,7 +1,7 @@
 //! `lightmeter gate`.
 
 use super::clock::now;
-use super::comparison::{Comparison, Earlier, matches_something, unused};
+use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
 use super::observed::is_time_told;
 use super::options::{AlsoJson, ReportFormat, Required, ShardArgument, Targets};
@@ -21,7 +21,7 @@ use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Stop;
 use lightmeter::document::pack::Choice;
-use lightmeter::document::report::Report;
+use lightmeter::document::report::{Report, Sentence};
 use lightmeter::faults::{Mistakes, explain};
 use lightmeter::files::lines;
 use lightmeter::filter::Filter;
@@ -140,8 +140,8 @@ impl Gate {
         report.seconds = start.elapsed().as_secs_f64();
         report.required = Some(self.required.part());
         let identity = report.renderer.as_ref().map(|renderer| renderer.identity.clone()).unwrap_or_default();
-        let unused = unused(&expectations, &[(&identity.name, &identity.version)], &report);
-        report.notes.extend(unused);
+        let others = expectations.of_others(&[(&identity.name, &identity.version)]);
+        report.notes.extend(others.map(Sentence::from));
         // What was asked is told, even where the baseline turns out to be of other accuracy rules.
         // What was not asked for want of time is no regression.
         let whole = earlier.as_ref().filter(|_| report.interrupted.is_none());

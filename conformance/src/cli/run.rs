@@ -1,7 +1,7 @@
 //! `lightmeter run`.
 
 use super::clock::now;
-use super::comparison::{Comparison, Earlier, matches_something, unused};
+use super::comparison::{Comparison, Earlier, matches_something};
 use super::config::used;
 use super::options::{AlsoJson, Amount, Choice, ReportFormat, Required};
 use super::progress::{Bar, Stream};
@@ -20,7 +20,7 @@ use lightmeter::document::Document as _;
 use lightmeter::document::by_case::ComparedBy;
 use lightmeter::document::event::Stop;
 use lightmeter::document::pack::Choice as CaseChoice;
-use lightmeter::document::report::{Identity, Report};
+use lightmeter::document::report::{Identity, Report, Sentence};
 use lightmeter::document::thousands;
 use lightmeter::faults::{Mistakes, explain};
 use lightmeter::filter::Filter;
@@ -208,9 +208,9 @@ impl Run {
             ..report
         };
         report.shaders_hash = hash_of(&options.code)?;
-        let named = report.adapters.iter().map(|adapter| (&*adapter.name, &*adapter.driver));
-        let unused = unused(&expectations, &named.collect::<Vec<_>>(), &report);
-        report.notes.extend(unused);
+        let named: Vec<_> = report.adapters.iter().map(|adapter| (&*adapter.name, &*adapter.driver)).collect();
+        let others = expectations.of_others(&named);
+        report.notes.extend(others.map(Sentence::from));
         // Of shards, `merge` works it out.
         report.explained = if is_shard { vec![] } else { explain(&report, options.profile) };
         // What was not judged for want of time is no regression.

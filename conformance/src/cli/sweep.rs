@@ -285,7 +285,9 @@ fn place_of(path: &Path) -> PathBuf {
 /// Whether some input is outside its bound, or none was judged.
 pub(crate) fn status(document: &SweepDocument) -> Status {
     let found = &document.statistics;
-    match (found.failed, found.indeterminate == found.inputs) {
+    // Where nothing is promised in a shard, another one may tell something.
+    let is_whole = document.shard == name_of(Shard::WHOLE);
+    match (found.failed, is_whole && found.indeterminate == found.inputs) {
         (0, true) => {
             say(
                 "error: nothing was judged: nothing is promised of any input; sweep another range, or give other inputs by --set",

@@ -1,9 +1,9 @@
 //! A formula along one of its inputs over every float of a range, and the named blend modes over every byte of source,
 //! destination and alpha.
 //!
-//! `preset` has the ready-made sweeps, `plan` works out what is swept, `telling` along which row, `span` cuts it into blocks and shares them out, `run` has
-//! a device evaluate them, `judge` and `blend` judge, `description` says what is swept,
-//! `file` is the document that holds what is found, which is a checkpoint meanwhile.
+//! `preset` has the ready-made sweeps, `plan` works out what is swept, `telling` along which row, `span` cuts it into blocks and
+//! shares them out, `run` has a device evaluate them, `judge` and `blend` judge, `description` says what is swept, `file` is the
+//! document that holds what is found, which is a checkpoint meanwhile.
 
 mod blend;
 mod description;

@@ -3,7 +3,6 @@
 use super::preset::{Free, PRESETS, Preset};
 use super::span::Span;
 use super::telling::{Chosen, Swept};
-use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::cases::{Domain, Input, Kind, Spec, Stage};
 use lightmeter_catalogue::nearest::did_you_mean;
 use lightmeter_catalogue::select::{CaseRef, Member};
@@ -235,7 +234,7 @@ fn number(member: &Member, preset: Option<Free>, asked: &Asked) -> Result<Over, 
             vec![output]
         }
     };
-    let swept = Swept { member, free, from, to, outputs, profile: PROFILES[0], is_ready: ready.is_some() };
+    let swept = Swept { member, free, from, to, outputs, is_ready: ready.is_some() };
     let chosen = swept.choose(row, |row| {
         for (name, values) in &asked.set {
             if let Ok(place) = set_place(spec, &names, name, values, free) {

@@ -1,7 +1,8 @@
 //! The row along which a sweep tells something: where the output depends on what is swept, so that a shader that reads it wrong is seen.
 
 use super::span::input;
-use lightmeter_arithmetic::{Accept, Profile};
+use lightmeter_arithmetic::Accept;
+use lightmeter_arithmetic::profile::PROFILES;
 use lightmeter_catalogue::select::{CaseRef, Member};
 use lightmeter_judge::{Outcome, judge};
 use lightmeter_scene::along::{Along, key_of};
@@ -25,7 +26,6 @@ pub(super) struct Swept<'a> {
     pub(super) to: f32,
     /// Outputs that may be chosen, the first of them rather than another.
     pub(super) outputs: Vec<usize>,
-    pub(super) profile: &'static Profile,
     /// Whether the given row is a ready-made sweep's, which tells something as it is.
     pub(super) is_ready: bool,
 }
@@ -64,7 +64,7 @@ impl Swept<'_> {
             row
         };
         if !(0..FIRST_ROWS).any(|k| self.changes(&drawn(k), &places)) && !self.changes(&first.1.row, &places) {
-            return Err(self.is_independent());
+            return Err(self.refusal(["does not depend", "depends"], ""));
         }
         let mut best = first;
         for row in (0..ROWS).map(drawn) {
@@ -75,7 +75,11 @@ impl Swept<'_> {
                 break;
             }
         }
-        if best.0 == 0 { Err(self.is_silent()) } else { Ok(best.1) }
+        if best.0 == 0 {
+            Err(self.refusal(["hardly depends", "depends enough"], ", so that twice the input would be legal too"))
+        } else {
+            Ok(best.1)
+        }
     }
 
     /// Numbers of the range: half of them evenly among its floats, half evenly among its values.
@@ -89,14 +93,15 @@ impl Swept<'_> {
         by_float.chain(by_value).collect()
     }
 
-    /// At how many places an implementation that reads the free number doubled is seen.
+    /// At how many places an implementation that reads the free number doubled is seen. The row is the same by whatever rules a sweep is judged, so
+    /// these are the first.
     fn told(&self, row: &[f32], output: usize, places: &[f32]) -> usize {
         let along = Along { row, free: self.free, output };
         let formula = &self.member.formula;
         let mut references = vec![0.0; places.len()];
         formula.reference_along(&along, places, &mut references);
         let mut legal = vec![Accept::ANY; places.len()];
-        formula.interval_along(&along, places, self.profile, &mut legal);
+        formula.interval_along(&along, places, PROFILES[0], &mut legal);
         let mut values = vec![0.0_f32; places.len()];
         formula.embedded_along(&along, &places.iter().map(|x| 2.0 * x).collect::<Vec<_>>(), &mut values);
         let is_seen = |((value, reference), legal): ((&f32, &f64), &Accept)| {
@@ -110,30 +115,17 @@ impl Swept<'_> {
         self.outputs.iter().any(|&output| changes(self.member, &Along { row, free: self.free, output }, places))
     }
 
-    fn is_independent(&self) -> String {
+    /// Why there is nothing to sweep: that one output, or none of several, depends on the free number.
+    fn refusal(&self, [one, several]: [&str; 2], because: &str) -> String {
         let spec = &self.member.spec;
         let which = match self.outputs[..] {
-            [one] => format!("output {} of {} does not depend", spec.output_name(one), spec.id),
-            _ => format!("no output of {} depends", spec.id),
+            [output] => format!("output {} of {} {one}", spec.output_name(output), spec.id),
+            _ => format!("no output of {} {several}", spec.id),
         };
-        format!("{which} on {}", self.along_what())
-    }
-
-    /// That nothing would be seen of an implementation that reads the free number doubled.
-    fn is_silent(&self) -> String {
-        let spec = &self.member.spec;
-        let which = match self.outputs[..] {
-            [one] => format!("output {} of {} hardly depends", spec.output_name(one), spec.id),
-            _ => format!("no output of {} depends enough", spec.id),
-        };
-        format!("{which} on {}: twice the input would be legal too", self.along_what())
-    }
-
-    fn along_what(&self) -> String {
-        let (over, from, to) = (self.member.spec.input_name(self.free), self.from, self.to);
+        let (over, from, to) = (spec.input_name(self.free), self.from, self.to);
         format!(
-            "{over} from {from} to {to} with these inputs; sweep another range by --from and --to, another number by --over, or give other \
-             inputs by --set"
+            "{which} on {over} from {from} to {to} with these inputs{because}; choose another range by --from and --to, another number by \
+             --over, or other inputs by --set"
         )
     }
 }
@@ -170,15 +162,7 @@ mod tests {
         let formula = &*plan.member.formula;
         let judge =
             Judge { formula, along, profile: &WGSL, deviations: &[], whole: (first, u64::from(last - first) + 1) };
-        let swept = Swept {
-            member: plan.member,
-            free: *free,
-            from: *from,
-            to: *to,
-            outputs: vec![],
-            profile: &WGSL,
-            is_ready: false,
-        };
+        let swept = Swept { member: plan.member, free: *free, from: *from, to: *to, outputs: vec![], is_ready: false };
         let failing = |place: f32| {
             let first = key_of(place);
             let doubled: Vec<f32> = (first..(first + PIECE).min(last + 1)).map(|key| 2.0 * float_of(key)).collect();

@@ -2,6 +2,7 @@
 
 use super::page::prose;
 use super::verdict::Verdict;
+use crate::against;
 use crate::page::selftest::SelftestRun;
 use crate::page::sweep::{Swept, command};
 use crate::text::unbound;
@@ -215,6 +216,7 @@ pub(super) fn notes(report: &Report) -> Markup {
                             "it excuses " (thousands(deviation.excused)) " verdicts, and its witness "
                             @if deviation.still_needed { "still shows it." } @else { "no longer shows it." } }
                     }
+                    @if let Some(said) = against::unused(report) { li { (said) } }
                     @for known in &report.expectations {
                         li { b { (known.id) } ", a known failure: " (known.reason) }
                     }
