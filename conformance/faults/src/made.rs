@@ -79,8 +79,8 @@ impl Made for KnownMistakes {
     }
 }
 
-/// Whether a form of a formula gives an answer. Where it leaves a wrong number open, as the power of a negative number is, it gives what is no
-/// number, and no number.
+/// Whether a form of a formula may give an answer. Where the accuracy rules leave a wrong number open in it, as they do the power of a negative
+/// number, only NaN and infinity count, and only if the form gives one of them in f32 as well.
 fn gives(form: &Variation<'_>, member: &Member, answered: &Answered<'_>, profile: &Profile) -> bool {
     let outputs = answered.values.len();
     let (mut legal, mut own) = (vec![Accept::ANY; outputs], vec![0.0_f32; outputs]);
@@ -110,7 +110,7 @@ mod tests {
         names.iter().map(ToString::to_string).collect()
     }
 
-    /// Wrong answers to a formula of whoever makes some mistakes.
+    /// The wrong answers of an implementation that makes some mistakes.
     fn wrong(id: &str, made: &[&str]) -> (&'static Member, Vec<KeptRow>) {
         let member = formulas().iter().find(|member| member.spec.id == id).expect(id);
         let faults: Vec<&'static Fault> = made.iter().map(|name| Fault::by_name(name).expect(name)).collect();
@@ -126,7 +126,7 @@ mod tests {
         (member, rows.into_iter().filter(is_wrong).collect())
     }
 
-    /// How many of the wrong answers of whoever makes some mistakes are those of known ones.
+    /// How many wrong answers of an implementation with mistakes known mistakes explain, and how many there are.
     fn explained(id: &str, made: &[&str], known: &[&str]) -> [usize; 2] {
         let (member, rows) = wrong(id, made);
         let known = KnownMistakes::by_names(&names(known)).expect("they are known");

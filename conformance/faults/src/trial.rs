@@ -30,7 +30,7 @@ const LEAST_EVIDENCE: f64 = 64.0;
 const MOST_CONSTANT: f64 = 4.0;
 /// The bits that a wrong number tells at least where the mistake computes exactly that number.
 const OWN: f64 = 2.0;
-/// The bits that are told by which cases fail, at most.
+/// The most bits that knowing which cases fail can give.
 const MOST_FORETOLD: f64 = 128.0;
 /// The share of the wrong numbers that a mistake gives at least: that very number, or one within an interval that tells something. Of the tables'
 /// mistakes some leave much open, as a power of what is greater than 1 does. Those that follow from a formula's steps are many, so more is asked of
@@ -206,7 +206,7 @@ impl Trial<'_> {
         Variation::of(self.member, &one.faults.iter().map(find).collect::<Option<Vec<Concerned>>>()?)
     }
 
-    /// What is legal for whoever makes a candidate's mistakes.
+    /// The legal values of an implementation with a candidate's mistakes.
     fn legal(&self, one: &TriedMistake, variation: &Variation<'_>, row: &Answered<'_>, out: &mut [Accept]) {
         match &one.parameter {
             Some(scaled) => scaled.interval(variation, row.inputs, self.profile, out),

@@ -114,12 +114,12 @@ impl ComparedGroup {
         }
     }
 
-    /// What tells its cases from others: its name, or its id where adapters are compared, one of which may lack a stage.
+    /// By what its cases are found in the baseline: its name, or its id where two adapters are compared, one of which may lack a stage.
     fn key(&self, across: bool) -> &str {
         if across { &self.group.id } else { &self.name }
     }
 
-    /// What it is called whoever computed it.
+    /// Its name without the adapter.
     fn across(&self) -> String {
         format!("{}, {}", self.group.id, self.group.place())
     }

@@ -27,7 +27,7 @@ fn a_gate_asks_what_the_renderer_declares_and_requires_what_is_asked_for_by_name
         let said = stdout(&output) + &stderr(&output);
         assert_eq!(code(&output), status, "{filter:?}: {said}");
         assert!(said.contains(told), "{filter:?}: {said}");
-        // What it does not declare is told in one line, but where it is asked for by name.
+        // One line counts what is not declared; a reason stands there only for what the filter names.
         let is_named = filter.iter().any(|glob| glob.contains('2') || glob.contains("radial"));
         assert_eq!(said.contains("not among the formulas that it declares"), is_named, "{filter:?}: {said}");
     }

@@ -337,3 +337,36 @@ impl Telling {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn known_mistakes_excuse_what_was_looked_at_whole() {
+        let explanation = |mistakes: &[&str], parameter| Explanation {
+            says: "it is wrong".into(),
+            mistakes: mistakes.iter().map(|&name| name.to_owned().into()).collect(),
+            parameter,
+            explained: 9,
+            open: 0,
+            standing: Standing::Best,
+        };
+        let known = ["half-as-bright".to_owned(), "fog-twice".to_owned()];
+        let found = |explanation| Diagnosis {
+            failing: 9,
+            looked_at: 9,
+            explanations: vec![explanation],
+            ..Diagnosis::default()
+        };
+        let whole = found(explanation(&["half-as-bright"], None));
+        assert!(whole.is_all_by(&known) && !whole.is_all_by(&known[1..]));
+        // Something was not looked at, or is not explained; another mistake, or a parameter, is wrong besides.
+        assert!(!Diagnosis { failing: 10, ..whole.clone() }.is_all_by(&known));
+        assert!(!Diagnosis { failing: 10, looked_at: 10, ..whole }.is_all_by(&known));
+        assert!(!found(explanation(&["half-as-bright", "no-ambient"], None)).is_all_by(&known));
+        let parameter = WrongParameter { names: vec!["density".into()], factor: 2.0 };
+        assert!(!found(explanation(&["half-as-bright"], Some(parameter))).is_all_by(&known));
+        assert!(!found(explanation(&[], None)).is_all_by(&known));
+    }
+}
