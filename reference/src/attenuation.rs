@@ -47,17 +47,19 @@ fn distance<R: Real>(light: Vec3<R>, p: Vec3<R>) -> R {
 
 /// 1 where the surface lies inside the cone, `−l·axis ≥ cos(cutoff)`, and 0 outside. Source: 000 §6.4.
 pub fn spot_cutoff<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R) -> R {
-    spot_exponent(l, axis, cutoff_cosine, R::literal(0.0))
+    let cosine = step!("−l·axis", |l, axis| (-l).dot(axis));
+    let (zero, one) = (R::literal(0.0), R::literal(1.0));
+    step!("spot", |cosine, cutoff_cosine| R::if_ge(cosine, cutoff_cosine, || one, || zero))
 }
 
 /// `max(−l·axis, 0)^e` inside the cone and 0 outside, as OpenGL's fixed function has it.
 ///
-/// With e = 0 the cone is evenly lit. Source: OpenGL 2.1 §2.14.1; the cutoff is 000's.
+/// With e = 0 the cone is evenly lit in front of the light; where it reaches behind it, 0 and 1 are both legal there (ruling 12). Source:
+/// OpenGL 2.1 §2.14.1; the cutoff is 000's.
 pub fn spot_exponent<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R, exponent: R) -> R {
     let cosine = step!("−l·axis", |l, axis| (-l).dot(axis));
     step!("spot", |cosine, cutoff_cosine, exponent| {
-        let (zero, one) = (R::literal(0.0), R::literal(1.0));
-        R::if_ge(cosine, cutoff_cosine, || R::if_ge(zero, exponent, || one, || cosine.lobe(exponent)), || zero)
+        R::if_ge(cosine, cutoff_cosine, || cosine.lobe(exponent), || R::literal(0.0))
     })
 }
 
@@ -85,10 +87,8 @@ pub fn point_scaled<R: Real>(kc: R, kl: R, kq: R, light: Vec3<R>, p: Vec3<R>) ->
 
 /// [`spot_exponent`] with the power of the cosine by the chord between −l and the axis.
 pub fn spot_exponent_by_chord<R: Real>(l: Vec3<R>, axis: Vec3<R>, cutoff_cosine: R, exponent: R) -> R {
-    let (zero, one) = (R::literal(0.0), R::literal(1.0));
     let cosine = step!("−l·axis", |l, axis| (-l).dot(axis));
     step!("spot", |cosine, cutoff_cosine, exponent| {
-        let lit = || R::if_ge(zero, exponent, || one, || power_by_chord(-l, axis, exponent));
-        R::if_ge(cosine, cutoff_cosine, lit, || zero)
+        R::if_ge(cosine, cutoff_cosine, || power_by_chord(-l, axis, exponent), || R::literal(0.0))
     })
 }

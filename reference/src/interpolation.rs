@@ -196,7 +196,7 @@ pub fn viewport<R: Real>(clip: Vec4<R>, to: &Viewport<R>) -> Vec3<R> {
     step!("window", |ndc, origin, size, depth| Vector([
         origin.x() + R::product([ndc.x() + one, half, size.x()]),
         origin.y() + R::product([one - ndc.y(), half, size.y()]),
-        depth.x() + ndc.z() * (depth.y() - depth.x()),
+        R::mix(depth.x(), depth.y(), ndc.z()),
     ]))
 }
 
@@ -207,7 +207,7 @@ pub fn viewport_opengl<R: Real>(clip: Vec4<R>, to: &Viewport<R>) -> Vec3<R> {
     step!("window from below", |ndc, origin, size, depth| Vector([
         origin.x() + R::product([ndc.x() + one, half, size.x()]),
         origin.y() + R::product([ndc.y() + one, half, size.y()]),
-        depth.x() + R::product([ndc.z() + one, half, depth.y() - depth.x()]),
+        R::mix(depth.x(), depth.y(), (ndc.z() + one) * half),
     ]))
 }
 

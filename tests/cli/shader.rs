@@ -50,6 +50,13 @@ const EXAMPLES: &[Example] = &[
     ("mistakes/half-lambert.glsl", "halfLambert", "lighting/diffuse-toward", &[], &["half-lambert"]),
     ("right/blinn.frag", "", "lighting/blinn", &[], &[]),
     ("right/blinn.wgsl", "", "lighting/blinn", &[], &[]),
+    ("right/textbook.glsl", "cone", "attenuation/spot-cutoff", &[], &[]),
+    ("right/textbook.glsl", "coneWithPower", "attenuation/spot-exponent", &[], &[]),
+    ("right/textbook.glsl", "diffuse", "lighting/diffuse-toward", &[], &[]),
+    ("right/textbook.glsl", "diffuseSaturated", "lighting/diffuse-toward", &[], &[]),
+    ("right/textbook.glsl", "highlight", "lighting/specular-phong", &[], &[]),
+    ("right/textbook.glsl", "eyeNormal", "vector/normal-inverse-transpose", &[], &[]),
+    ("right/textbook.glsl", "sun", "lighting/phong-unit-light", &[], &[]),
 ];
 
 /// The words that judge a shader, or a function of it.

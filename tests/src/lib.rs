@@ -3,6 +3,7 @@
 pub mod branches;
 pub mod callers;
 pub mod certificate;
+pub mod directives;
 pub mod exact;
 pub mod forms;
 pub mod frames;

@@ -5,7 +5,7 @@ use crate::meaning::{Context, Meaning, Term};
 use crate::name::keys;
 use crate::program::{From, Leaf, ShaderOutput, ShaderProgram, Variable};
 use crate::synonyms::SYNONYMS;
-use lightmeter_catalogue::cases::{Spec, ValueShape};
+use lightmeter_catalogue::cases::{Input, Spec, ValueShape};
 use lightmeter_document::report::FoundBy;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{BuiltIn, ScalarKind};
@@ -64,7 +64,7 @@ pub fn bind(program: &ShaderProgram, spec: &Spec, asked: &[AskedBinding]) -> Res
     known(program, asked)?;
     for AskedBinding { name, expression } in asked {
         for slot in program.slots.iter().filter(|slot| is_named(slot, name)).take(1) {
-            checked(slot, expression, spec)?;
+            checked(slot, &of_an_input(slot, expression, spec), spec)?;
         }
     }
     let is_point = |slot: &&Variable| meanings(slot).next() == Some(Meaning::Point);
@@ -243,7 +243,7 @@ fn meanings(slot: &Variable) -> impl Iterator<Item = Meaning> + '_ {
 fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) -> Option<(String, FoundBy)> {
     let whole = asked.iter().find(|asked| asked.name == slot.name);
     if let Some(asked) = whole.or_else(|| asked.iter().find(|asked| is_named(slot, &asked.name))) {
-        return Some((asked.expression.clone(), FoundBy::Asked));
+        return Some((of_an_input(slot, &asked.expression, context.spec), FoundBy::Asked));
     }
     if let From::BuiltIn(built_in) = slot.from {
         return Some((built_in_value(built_in, slot.leaf, context), FoundBy::Fixed));
@@ -255,7 +255,12 @@ fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) ->
     let name = slot.name.trim_end_matches('_');
     // A normal that is a parameter is a unit vector, whatever the formula's is.
     let is_unit = slot.from == From::Parameter && name == "normal";
-    let same = context.spec.inputs.iter().find(|input| input.name == name && !is_unit && !is_of_surface(slot, context));
+    // Of a long name its capitals are the writer's taste.
+    let is_same = |input: &&Input| {
+        let letters = |name: &str| name.replace('_', "");
+        input.name == name || (name.len() > 3 && letters(input.name).eq_ignore_ascii_case(&letters(name)))
+    };
+    let same = context.spec.inputs.iter().find(|input| is_same(input) && !is_unit && !is_of_surface(slot, context));
     if let Some(input) = same
         && let Some(fitted) = fitted(input.name, input.shape, slot.leaf, None)
     {
@@ -275,6 +280,15 @@ fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) ->
         Some((fitted, FoundBy::Synonym))
     });
     understood.or_else(|| Some((numbered(slot, context).or_else(|| unnamed(slot, context))?, FoundBy::Synonym)))
+}
+
+/// An expression that is asked for. An input by its name alone is brought to the variable's type, as it is where no binding is asked for.
+fn of_an_input(slot: &Variable, expression: &str, spec: &Spec) -> String {
+    let input = spec.inputs.iter().find(|input| input.name == expression);
+    let fitted = input.and_then(|input| {
+        fitted(input.name, input.shape, slot.leaf, meanings(slot).find(|&meaning| meaning != Meaning::Identity))
+    });
+    fitted.unwrap_or_else(|| expression.to_owned())
 }
 
 /// The input whose name a variable has but for a number at its end, by which tools tell names apart.
@@ -373,6 +387,15 @@ fn fitted(expression: &str, shape: ValueShape, leaf: Leaf, meaning: Option<Meani
     match (shape, leaf) {
         (_, Leaf::Matrix(columns, rows)) if meaning == Some(Meaning::Identity) => Some(identity(columns, rows)),
         (ValueShape::Mat3, Leaf::Matrix(3, 3)) | (ValueShape::Mat4, Leaf::Matrix(4, 4)) => Some(expression.into()),
+        // A modelview matrix of which a normal's formula has the upper left.
+        (ValueShape::Mat3, Leaf::Matrix(4, 4)) => {
+            let column = |k: u8| format!("vec4f(({expression})[{k}], 0.0)");
+            Some(format!("mat4x4f({}, {}, {}, vec4f(0.0, 0.0, 0.0, 1.0))", column(0), column(1), column(2)))
+        }
+        (ValueShape::Mat4, Leaf::Matrix(3, 3)) => {
+            let column = |k: u8| format!("({expression})[{k}].xyz");
+            Some(format!("mat3x3f({}, {}, {})", column(0), column(1), column(2)))
+        }
         (_, Leaf::Vector(size, ScalarKind::Float)) if meaning == Some(Meaning::TexturePlace) => {
             Some(format!("vec{size}f({expression})"))
         }

@@ -19,8 +19,10 @@ pub(super) enum Twist {
     AlwaysAdd,
     /// MIN for MAX, and the reverse.
     MinForMax,
-    /// The constant's alpha for its colour, and the reverse.
+    /// The constant's alpha for its colour.
     ConstantAlphaForColor,
+    /// The constant's colour for its alpha.
+    ConstantColorForAlpha,
     /// 1 − forgotten in the destination's factor.
     OneMinusForgotten,
     /// 1 − forgotten in the source's factor.
@@ -153,7 +155,8 @@ impl Model {
             Twist::OperandsReversed => self.equations(reversed),
             Twist::AlwaysAdd => self.equations(addition_for_subtraction),
             Twist::MinForMax => self.equations(min_for_max),
-            Twist::ConstantAlphaForColor => self.factors(constant_of_the_other_kind),
+            Twist::ConstantAlphaForColor => self.color_factors(constant_alpha_for_color),
+            Twist::ConstantColorForAlpha => self.color_factors(constant_color_for_alpha),
             Twist::OneMinusForgotten => self.each(|s| State { dst: without_one_minus(s.dst), ..s }),
             Twist::OneMinusForgottenInSource => self.each(|s| State { src: without_one_minus(s.src), ..s }),
             Twist::SourceForDestination => self.factors(source_for_destination),
@@ -354,11 +357,17 @@ const fn multiplied_by_coverage(state: State) -> State {
     }
 }
 
-const fn constant_of_the_other_kind(factor: Factor) -> Factor {
+const fn constant_alpha_for_color(factor: Factor) -> Factor {
     match factor {
         Factor::ConstantColor => Factor::ConstantAlpha,
-        Factor::ConstantAlpha => Factor::ConstantColor,
         Factor::OneMinusConstantColor => Factor::OneMinusConstantAlpha,
+        other => other,
+    }
+}
+
+const fn constant_color_for_alpha(factor: Factor) -> Factor {
+    match factor {
+        Factor::ConstantAlpha => Factor::ConstantColor,
         Factor::OneMinusConstantAlpha => Factor::OneMinusConstantColor,
         other => other,
     }

@@ -29,8 +29,9 @@ pub struct Scaled {
 const ROWS: usize = 64;
 /// Steps of the refinement.
 const STEPS: usize = 16;
-/// Factors from 2⁻⁵ to 2⁵ in steps of a sixth of an octave: at the ends and beyond, what seems to be one is something else.
-const OCTAVES: i32 = 5;
+/// Factors from 2⁻⁸ to 2⁸ in steps of a sixth of an octave: at the ends and beyond, what seems to be one is something else. Exponents are taken
+/// times 128 where a shininess from 0 to 1 is meant.
+const OCTAVES: i32 = 8;
 const STEPS_AN_OCTAVE: i32 = 6;
 /// The same where mistakes are tried with parameters, cases, and how many of those are sought well.
 const ROUGH_STEPS: i32 = 2;

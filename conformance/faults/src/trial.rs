@@ -153,10 +153,15 @@ impl Trial<'_> {
             {
                 let Some(variation) = Variation::of(self.member, &[*first, *second]) else { continue };
                 let mut far = 0;
+                let mut right = 0;
                 let is_near = near.iter().all(|row| {
-                    far += usize::from(!row.allows(&variation));
+                    let value = row.value(&variation);
+                    far += usize::from(!row.allows(&value));
+                    right += usize::from(is_inside_f64(&value, &row.legal));
                     far <= 1
                 });
+                // Two mistakes that undo each other only round in another way, which explains anything that is nearly right.
+                let is_near = is_near && right <= near.len() / 2;
                 if is_near && self.is_likely(PAIR_PROBES, 1, &variation) {
                     let says = variation.says();
                     self.take(&variation, says.clone(), Some(says), None, prior);
@@ -434,11 +439,17 @@ fn bits_of(count: usize) -> f64 {
     share(count.max(1), 1).log2()
 }
 
+/// Whether numbers lie within their intervals.
+fn is_inside_f64(values: &[f64], legal: &[Accept]) -> bool {
+    values.iter().zip(legal).all(|(&value, legal)| legal.contains(value))
+}
+
 /// An answer, and how far from it a value in f64 may be that is worth a closer look.
 struct Near {
     inputs: Vec<f64>,
     values: Vec<f32>,
     reach: Vec<f64>,
+    legal: Vec<Accept>,
     places: Range<usize>,
 }
 
@@ -452,14 +463,21 @@ impl Near {
             if reach.is_finite() { reach } else { f64::INFINITY }
         });
         let inputs = row.inputs.iter().map(|&x| x.into()).collect();
-        Some(Self { inputs, values: row.values.to_vec(), reach: reach.collect(), places: places.clone() })
+        let (values, legal, places) = (row.values.to_vec(), row.legal.to_vec(), places.clone());
+        Some(Self { inputs, values, reach: reach.collect(), legal, places })
     }
 
-    fn allows(&self, variation: &Variation<'_>) -> bool {
+    /// What the mistakes come to in f64.
+    fn value(&self, variation: &Variation<'_>) -> Vec<f64> {
         let mut row = self.inputs.clone();
         let mut out = vec![0.0; variation.member.spec.output_len()];
         variation.evaluate_row(&mut row, &mut out);
-        let out = &out[self.places.clone()];
+        out.drain(..self.places.start);
+        out.truncate(self.places.len());
+        out
+    }
+
+    fn allows(&self, out: &[f64]) -> bool {
         let is_near = |((&value, out), reach): ((&f32, &f64), &f64)| {
             let apart = (f64::from(value) - out).abs();
             apart <= *reach || !apart.is_finite()

@@ -46,6 +46,8 @@ impl Parts {
                 Step::AlphaSummed => parts.sums_alpha = true,
             }
         }
+        // The first is made of what the next ones come to.
+        parts.at.sort_by_key(|at| at.replaces());
         parts
     }
 

@@ -105,6 +105,11 @@ fn no_formula(file: &Path, refused: impl Iterator<Item = AdaptError>) -> anyhow:
 /// An expression as people read it.
 fn shortened(expression: &str) -> String {
     match expression {
+        // A matrix of another size, by its columns.
+        resized if resized.starts_with("mat") && resized.contains(")[0]") => {
+            let name = resized.split_once(")[0]").and_then(|(before, _)| before.rsplit_once('('));
+            name.map_or(resized, |(_, name)| name).to_owned()
+        }
         matrix if matrix.starts_with("mat") => "the identity".into(),
         zero if zero.ends_with("()") => "0".into(),
         other => other.to_owned(),

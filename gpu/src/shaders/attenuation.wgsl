@@ -31,9 +31,6 @@ fn attenuation_spot_exponent(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent
     if attenuation_cone(cosine, cutoff_cosine) <= 0.0 {
         return 0.0;
     }
-    if exponent <= 0.0 {
-        return 1.0;
-    }
     return vector_lobe(cosine, exponent);
 }
 
@@ -61,9 +58,6 @@ fn attenuation_point_scaled(kc: f32, kl: f32, kq: f32, light: vec3f, p: vec3f) -
 fn attenuation_spot_exponent_by_chord(l: vec3f, axis: vec3f, cutoff_cosine: f32, exponent: f32) -> f32 {
     if attenuation_cone(dot(-l, axis), cutoff_cosine) <= 0.0 {
         return 0.0;
-    }
-    if exponent <= 0.0 {
-        return 1.0;
     }
     return vector_cosine_power_by_chord(-l, axis, exponent);
 }

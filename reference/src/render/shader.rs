@@ -307,8 +307,12 @@ impl<'a, R: Real> Shader<'a, R> {
             Shape::Point { position, .. } => (vector::toward(position, p), one),
             Shape::Spot { position, axis, cutoff, exponent, .. } => {
                 let l = vector::toward(position, p);
-                let exponent = if self.has(Effect::SpotExponent) { exponent } else { R::literal(0.0) };
-                (l, attenuation::spot_exponent(l, axis, cutoff, exponent))
+                let cone = if self.has(Effect::SpotExponent) {
+                    attenuation::spot_exponent(l, axis, cutoff, exponent)
+                } else {
+                    attenuation::spot_cutoff(l, axis, cutoff)
+                };
+                (l, cone)
             }
         };
         let atten = match light.shape {

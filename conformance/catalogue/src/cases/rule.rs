@@ -483,8 +483,8 @@ const RULES: &[(&str, &str)] = &[
 mod tests {
     use super::super::pattern::any_matches;
     use super::{RULES, of};
-    use crate::cases::all;
     use crate::cases::blend::Samples;
+    use crate::cases::{Domain, all};
 
     /// Formulas with hard cases that follow from the formula alone.
     const COMPLETE: [&str; 1] = ["color/sum"];
@@ -507,6 +507,45 @@ mod tests {
             assert_eq!(of(&spec.id).is_empty(), COMPLETE.contains(&&*spec.id), "{}", spec.id);
         }
         assert!(COMPLETE.iter().all(|id| specs.iter().any(|spec| spec.id == *id && !spec.hard.is_empty())));
+    }
+
+    /// Hard cases whose unit vectors are none, by how their ids begin, with the reason.
+    const NOT_UNIT: &[(&str, &str)] = &[
+        ("vector/reflect/hard/no-normal: n", "a rule says what it gives"),
+        ("vector/normal-by-cofactors/", "it takes normals of any length, and gives their direction"),
+        ("vector/interpolated-normal/hard/opposite: face", "the formula does not read it"),
+        (
+            "vector/interpolated-normal-guarded/",
+            "the face's normal is normalised; what is left is just enough, or too little",
+        ),
+    ];
+
+    #[test]
+    fn unit_vectors_of_hard_cases_are_unit_vectors() {
+        let specs: Vec<_> = all(&Samples::default()).iter().map(|formula| formula.spec()).collect();
+        let is_unit = |v: &[f32]| {
+            let length = v.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
+            // A few roundings, or a direction whose numbers were written with six digits.
+            (length - 1.0).abs() < 1e-6
+        };
+        let mut others = vec![];
+        for spec in &specs {
+            for hard in spec.hard {
+                for (name, values) in hard.inputs {
+                    let input = spec.inputs.iter().find(|input| input.name == *name);
+                    let is_direction = input.is_some_and(|input| input.domain == Domain::Direction);
+                    if is_direction && !is_unit(values) {
+                        others.push(format!("{}/hard/{}: {name}", spec.id, hard.name));
+                    }
+                }
+            }
+        }
+        let is_known = |other: &String| NOT_UNIT.iter().any(|(known, _)| other.starts_with(known));
+        let unknown: Vec<&String> = others.iter().filter(|other| !is_known(other)).collect();
+        assert!(unknown.is_empty(), "a shader that normalises what is a unit vector already fails at {unknown:#?}");
+        for (known, reason) in NOT_UNIT {
+            assert!(others.iter().any(|other| other.starts_with(known)), "{known}: {reason}");
+        }
     }
 
     #[test]

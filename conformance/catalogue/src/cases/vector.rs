@@ -24,7 +24,6 @@ formula!(
     hard [
         Hard::new("straight-down", "comes back", &[("i", &[0.0, 0.0, -1.0])]),
         Hard::new("grazing", "goes on", &[("i", &[1.0, 0.0, 0.0])]),
-        Hard::new("short-normal", "a normal of length 0.9 gives |r| below 1", &[("i", &[0.6, 0.0, -0.8]), ("n", &[0.0, 0.0, 0.9])]),
         Hard::new("no-normal", "i itself", &[("n", &[0.0, 0.0, 0.0])]),
     ],
 );

@@ -62,9 +62,11 @@ pub(super) fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> O
         F::MixFromTheEnd | F::OverFromTheProduct | F::Middle => between(form, taken),
         F::EdgeFromItsEnd | F::EdgeFromThePoint | F::NormalByVertices => sides(form, taken),
         F::WeightsBySum | F::WeightsByDifference => weights(form, taken),
-        F::DepthBetween | F::DepthRange | F::UpsideDown => window(form, taken),
+        F::DepthRange | F::UpsideDown => window(form, taken),
         F::TruncatedByte | F::ByteBy256 | F::UnclampedByte | F::ByteBySum => byte(form, taken),
-        F::LinearDepth | F::LinearDepthRead | F::DepthByProjection | F::DepthByDifference => depth(form, taken),
+        F::LinearDepth | F::LinearDepthRead | F::DepthByProjection | F::DepthByReciprocals | F::DepthByDifference => {
+            depth(form, taken)
+        }
         F::LastWeightAsTheRest | F::FromTheFirst => shared(form, taken),
         F::NearPlaneOutside | F::FarPlaneOutside => clipped(form, taken),
         F::EncodeThreshold
@@ -202,10 +204,12 @@ fn attenuated<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
 }
 
 fn cone<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
-    let [cosine, cutoff, exponent] =
-        [scalar(taken, "cosine")?, scalar(taken, "cutoff_cosine")?, scalar(taken, "exponent")?];
+    let [cosine, cutoff] = [scalar(taken, "cosine")?, scalar(taken, "cutoff_cosine")?];
+    let exponent = scalar(taken, "exponent");
     let (zero, one) = (R::literal(0.0), R::literal(1.0));
-    let power = || R::if_ge(zero, exponent, || one, || cosine.lobe(exponent));
+    // A cone without an exponent is evenly lit.
+    let power_of = |cosine: R| exponent.map_or(one, |exponent| cosine.lobe(exponent));
+    let power = || power_of(cosine);
     let rescaled = || ((cosine - cutoff) / (one - cutoff)).clamp(zero, one);
     let share = match form {
         Form::SmoothCone => smoothstep(cutoff, one, cosine) * power(),
@@ -213,7 +217,7 @@ fn cone<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::LinearCone => rescaled() * power(),
         Form::ConeWithoutEdge => R::if_ge(cutoff, cosine, || zero, power),
         Form::ConeTurned => R::if_ge(cosine, cutoff, || zero, power),
-        _ => R::if_ge(cosine, cutoff, || R::if_ge(zero, exponent, || one, || rescaled().lobe(exponent)), || zero),
+        _ => R::if_ge(cosine, cutoff, || power_of(rescaled()), || zero),
     };
     give(taken, [share])
 }
@@ -407,13 +411,7 @@ fn window<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
     let opengl = taken.step.name == "window from below";
     let (up, halved) = (opengl != (form == Form::UpsideDown), opengl != (form == Form::DepthRange));
     let y = if up { y + one } else { one - y };
-    let range = far - near;
-    let depth = if form == Form::DepthBetween {
-        let t = if halved { (z + one) * half } else { z };
-        near * (one - t) + far * t
-    } else {
-        near + if halved { R::product([z + one, half, range]) } else { z * range }
-    };
+    let depth = R::mix(near, far, if halved { (z + one) * half } else { z });
     give(taken, [ox + R::product([x + one, half, sx]), oy + R::product([y, half, sy]), depth])
 }
 
@@ -440,6 +438,12 @@ fn depth<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
             } else {
                 far / range * (one - near / z)
             }
+        }
+        Form::DepthByReciprocals => {
+            let one = R::literal(1.0);
+            let [near, far, z] = [near, far, scalar(taken, "z")?].map(|distance| one / distance);
+            let (from, to) = if taken.step.name == "reversed depth" { (far, near) } else { (near, far) };
+            (z - from) / (to - from)
         }
         Form::DepthByDifference => {
             let (z, reversed) = (scalar(taken, "z")?, taken.step.name == "reversed depth");

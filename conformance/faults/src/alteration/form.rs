@@ -133,8 +133,6 @@ pub(in super::super) enum Form {
     WeightsByDifference,
     /// a × b + b × c + c × a.
     NormalByVertices,
-    /// near(1 − z) + far·z.
-    DepthBetween,
     /// Depth from [−1, 1] for [0, 1] or the reverse.
     DepthRange,
     /// y the other way up.
@@ -151,6 +149,8 @@ pub(in super::super) enum Form {
     LinearDepth,
     /// far/(far − near)·(1 − near/z), or near/(far − near)·(far/z − 1).
     DepthByProjection,
+    /// (1/n − 1/z) / (1/n − 1/f).
+    DepthByReciprocals,
     /// far/(far − near) − far·near/((far − near)z), or near·far/((far − near)z) − near/(far − near).
     DepthByDifference,
     /// Depth read back as if it grew evenly.
@@ -216,7 +216,7 @@ impl Form {
             | Self::LinearCone
             | Self::RescaledCone
             | Self::ConeWithoutEdge
-            | Self::ConeTurned => &[&["cosine", "cutoff_cosine", "exponent"]],
+            | Self::ConeTurned => &[&["cosine", "cutoff_cosine"]],
             Self::Planar | Self::Radial | Self::SignedDepth | Self::NegatedDepth => &[&["p"]],
             Self::FogExp | Self::FogExp2Document | Self::FogExp2OpenGl | Self::FogRational => {
                 &[&["distance", "density"]]
@@ -234,9 +234,11 @@ impl Form {
             Self::OverFromTheProduct => &[&["src", "dst"]],
             Self::EdgeFromItsEnd | Self::EdgeFromThePoint => &[&["a", "b", "p"], &["a", "b", "c"]],
             Self::WeightsBySum | Self::WeightsByDifference => &[&["a", "b", "c", "p"]],
-            Self::DepthBetween | Self::DepthRange | Self::UpsideDown => &[&["ndc", "origin", "size", "depth"]],
+            Self::DepthRange | Self::UpsideDown => &[&["ndc", "origin", "size", "depth"]],
             Self::TruncatedByte | Self::ByteBy256 | Self::UnclampedByte | Self::ByteBySum => &[&["c"]],
-            Self::LinearDepth | Self::DepthByProjection | Self::DepthByDifference => &[&["near", "far", "z"]],
+            Self::LinearDepth | Self::DepthByProjection | Self::DepthByReciprocals | Self::DepthByDifference => {
+                &[&["near", "far", "z"]]
+            }
             Self::LinearDepthRead => &[&["near", "far", "depth"]],
             Self::EncodeThreshold
             | Self::EncodeRec709

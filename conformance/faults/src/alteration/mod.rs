@@ -83,8 +83,12 @@ impl At {
 
     /// Whether two mistakes cannot be combined: they are the same one, or both replace the computation of the same step.
     pub(super) fn collides(&self, other: &Self) -> bool {
-        let replaces = |at: &Self| matches!(at.what, Do::Pass(_) | Do::PassAs(..) | Do::Sum(..) | Do::Form(_));
-        self.step == other.step && (self.what == other.what || (replaces(self) && replaces(other)))
+        self.step == other.step && (self.what == other.what || (self.replaces() && other.replaces()))
+    }
+
+    /// Whether it takes the place of the step's own computation, so that what changes the result comes after it.
+    pub(super) const fn replaces(&self) -> bool {
+        matches!(self.what, Do::Pass(_) | Do::PassAs(..) | Do::Sum(..) | Do::Form(_))
     }
 
     fn make<R: Arithmetic>(&self, taken: &mut Taken<'_, R>) {

@@ -38,8 +38,13 @@ pub(super) const FAULTS: &[Fault] = &[
     .only(|spec| spec.id.ends_with("-factors-ignored")),
     fault(
         "constant-alpha-for-color",
-        "the constant's colour and its alpha are exchanged",
+        "factors read the constant's alpha where they are to read its colour",
         &[&[blended(Blended::ConstantAlphaForColor)]],
+    ),
+    fault(
+        "constant-color-for-alpha",
+        "factors read the constant's colour where they are to read its alpha",
+        &[&[blended(Blended::ConstantColorForAlpha)]],
     ),
     fault(
         "one-minus-forgotten",

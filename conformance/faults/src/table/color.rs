@@ -144,5 +144,11 @@ pub(super) const FAULTS: &[Fault] = &[
     ),
     fault("encode-scale-missing", "sRGB's factor of 1.055 is missing", &[&[form("encoded", Form::EncodeWithoutScale)]])
         .seen_in("three.js, PR 8345"),
+    fault(
+        "power-of-0.4545",
+        "the power is 0.4545, where 1/2.2 is asked for",
+        &[&[result("c^(1/2.2)", Op::Power(0.4545 * 2.2))]],
+    )
+    .seen_in("pow(color, vec3(0.4545))"),
     fault("srgb-for-a-power", "sRGB stands for a power of 1/2.2", &[&[pass_as("c^(1/2.2)", "c", Op::Encode)]]),
 ];

@@ -460,23 +460,7 @@ pub(super) const FAULTS: &[Fault] = &[
         "the view vector is normalised at the vertices before it is interpolated",
         &[&[result("v at a vertex", Op::Normalize)]],
     ),
-    fault(
-        "unit-vectors-normalised",
-        "vectors that the formula takes as they come are normalised first",
-        &[
-            &[input("l", Op::Normalize), input("n", Op::Normalize)],
-            &[input("i", Op::Normalize), input("n", Op::Normalize)],
-            &[input("n", Op::Normalize), input("h", Op::Normalize)],
-            &[input("l", Op::Normalize), input("axis", Op::Normalize)],
-            &[input("a", Op::Normalize), input("b", Op::Normalize)],
-            &[input("r", Op::Normalize)],
-        ],
-    )
-    .only(|spec| spec.hard.iter().any(|hard| hard.name == "cosine-above-1"))
-    .seen_in("max(dot(normalize(N), normalize(L)), 0.0), where N and L are unit vectors already"),
     fault("ambient-in-the-cone", "the spotlight's cone dims the ambient term too", &[&[times("CA", "cone")]]),
-    fault("incidence-at-most-1", "the diffuse cosine is limited to 1", &[&[result("FI", Op::AtMost(1.0))]])
-        .seen_in("saturate(dot(n, l)) of vectors that are not of length 1"),
     fault(
         "incidence-floored",
         "the diffuse cosine is held above 0.01",

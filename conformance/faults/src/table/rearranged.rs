@@ -77,13 +77,6 @@ pub(super) const FAULTS: &[Fault] = &[
     .rounding()
     .seen_in("clippers that find the share once for all attributes"),
     fault(
-        "rearranged-depth-range",
-        "the formula is rearranged, near(1 − z) + far·z for near + z(far − near): equal for real numbers, and rounded elsewhere",
-        &[&[form("window", Form::DepthBetween)], &[form("window from below", Form::DepthBetween)]],
-    )
-    .rounding()
-    .seen_in("viewport transforms that mix near and far"),
-    fault(
         "rearranged-fog-mix",
         "the formula is rearranged, shaded − (1 − f)(shaded − fog) for fog(1 − f) + shaded·f: equal for real numbers, and rounded elsewhere",
         &[&[form("color", Form::FogFromTheSurface)]],
@@ -102,6 +95,13 @@ pub(super) const FAULTS: &[Fault] = &[
     )
     .rounding()
     .seen_in("projection matrices, which hold f/(f − n) and n·f/(f − n)"),
+    fault(
+        "rearranged-depth-by-reciprocals",
+        "the formula is rearranged, (1/z − 1/n)/(1/f − 1/n) for f(z − n)/(z(f − n)): equal for real numbers, and rounded elsewhere",
+        &[&[form("depth", Form::DepthByReciprocals)], &[form("reversed depth", Form::DepthByReciprocals)]],
+    )
+    .rounding()
+    .seen_in("textbooks that write a depth as a share of 1/z"),
     fault(
         "rearranged-depth-by-difference",
         "the formula is rearranged as a projection matrix multiplies, f/(f − n) − f·n/((f − n)z) for f(z − n)/(z(f − n)): equal for real numbers, and rounded elsewhere",

@@ -5,7 +5,7 @@ use super::super::change::Before as In;
 use super::super::fault::Fault;
 use super::super::fault::Step::{Before, Instead};
 use super::super::op::Op;
-use super::{at, fault, form, given, input, pass, pass_as, swap};
+use super::{at, fault, form, given, input, pass, pass_as, result, swap};
 
 pub(super) const FAULTS: &[Fault] = &[
     fault(
@@ -46,6 +46,11 @@ pub(super) const FAULTS: &[Fault] = &[
         &[&[form("modelview⁻ᵀ·n", Form::NormalByUnsigned)], &[form("⟨modelview⁻ᵀ·n⟩", Form::NormalByUnsigned)]],
     )
     .seen_in("mirrored objects lit from behind"),
+    fault(
+        "normal-normalised",
+        "the normal is normalised, where the formula keeps its length",
+        &[&[result("modelview⁻ᵀ·n", Op::Normalize)], &[result("normal by the modelview", Op::Normalize)]],
+    ),
     fault(
         "w-divide-missing",
         "a position is not divided by its w",
@@ -101,6 +106,9 @@ pub(super) const FAULTS: &[Fault] = &[
                 ("vector/halfway", "vector/halfway-unguarded"),
             ])],
             &[pass_as("l", "to_light", Op::NormalizeAny)],
+            &[pass_as("face's n", "cross", Op::NormalizeAny)],
+            &[pass_as("⟨Σn⟩", "sum", Op::NormalizeAny)],
+            &[pass_as("⟨n⟩", "n", Op::NormalizeAny)],
         ],
     )
     .seen_in("GLSL's normalize"),
