@@ -106,6 +106,25 @@ mod tests {
     }
 
     #[test]
+    fn two_mistakes_that_undo_each_other_explain_nothing() {
+        // A few ULP off, as a power of −1 is: nearly what the square root of a light attenuated twice comes to.
+        let (found, _) = diagnosis("attenuation/linear", |_, inputs, out| {
+            let right = (1.0 / inputs[0]).to_bits();
+            out[0] = f32::from_bits(right + inputs[0].to_bits() % 11 - 5);
+        });
+        assert!(found.failing > 50 && found.explanations.is_empty(), "{}", found.diagnosis);
+    }
+
+    #[test]
+    fn a_mistake_after_a_step_is_made_of_one_in_its_place() {
+        let (found, _) =
+            diagnosis("vector/normal-inverse-transpose", making(&["normal-normalised", "normals-by-modelview"]));
+        let mut faults = found.explanations.first().expect("it is explained").faults.clone();
+        faults.sort_unstable();
+        assert_eq!(faults, ["normal-normalised", "normals-by-modelview"], "{}", found.diagnosis);
+    }
+
+    #[test]
     fn a_mistake_is_told_in_a_sentence() {
         let (found, inputs) = diagnosis("fog/exp", making(&["fog-radial"]));
         let n = found.failing;

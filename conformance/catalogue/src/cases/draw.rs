@@ -116,7 +116,7 @@ pub fn move_by_ulps(spec: &Spec, hard: &Hard, k: u64, row: &mut [f32]) {
             let (count, up) = (1 + steps % FARTHEST, steps >> 32 & 1 == 1);
             // A third stays where it is, so that one input is moved alone too.
             let is_turned = *x == 0.0 && stays > 0.0;
-            if numbers.next().is_multiple_of(3) || (*x == 0.0 && !is_zero && !is_turned) || x.abs() == stays {
+            if numbers.next().is_multiple_of(3) || (*x == 0.0 && !is_zero && !is_turned) || x.abs() >= stays {
                 continue;
             }
             if is_turned {
