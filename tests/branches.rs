@@ -85,6 +85,11 @@ const UNSEEN: &[(&str, &str)] = &[
     ("scene_lighting.wgsl:136: choose highlight:", "one of the effects of highlights gives it"),
     ("scene_lighting.wgsl:55: when !lights,", "what is lit by no light is not asked for it"),
     ("scene_lighting.wgsl:120: if spot,", "what is passed over is 0: it saves time"),
+    ("effects/phong.wgsl:12: when fog,", "what fog hides is not lit: it saves time"),
+    (
+        "effects/spot.wgsl:35: when toward_2 & !point,",
+        "a technique of `bench`, of two to four spotlights without another light, which no scene has",
+    ),
     ("scene_lighting.wgsl:129: if gate | !specular,", "the same"),
 ];
 
