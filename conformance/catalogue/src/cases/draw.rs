@@ -97,8 +97,7 @@ impl Input {
 /// Moves the numbers that a hard case gives by a few ULP, up or down, the k-th way.
 ///
 /// Whole numbers stay, and so does a 0 among other components. A 0 by itself becomes one of the least normal numbers, of
-/// either sign where the input may be negative. At an end of what the formula is for all stay. A unit vector is turned: its largest number
-/// stays and a 0 beside it moves by a few roundings of 1, so that it is one still, and normalising it again no mistake.
+/// either sign where the input may be negative. At an end of what the formula is for all stay.
 pub fn move_by_ulps(spec: &Spec, hard: &Hard, k: u64, row: &mut [f32]) {
     const FARTHEST: u64 = 3;
     if hard.is_at_an_end {
@@ -109,18 +108,11 @@ pub fn move_by_ulps(spec: &Spec, hard: &Hard, k: u64, row: &mut [f32]) {
         let is_given = hard.inputs.iter().any(|(name, _)| *name == input.name);
         let Some(range) = spec.place(input.name).filter(|_| is_given && input.is_continuous()) else { continue };
         let is_zero = row[range.clone()].iter().all(|&x| x == 0.0);
-        let largest = row[range.clone()].iter().fold(0.0_f32, |largest, x| largest.max(x.abs()));
-        let stays = if input.domain == Domain::Direction { largest } else { f32::NAN };
         for x in &mut row[range] {
             let steps = numbers.next() >> 7;
             let (count, up) = (1 + steps % FARTHEST, steps >> 32 & 1 == 1);
             // A third stays where it is, so that one input is moved alone too.
-            let is_turned = *x == 0.0 && stays > 0.0;
-            if numbers.next().is_multiple_of(3) || (*x == 0.0 && !is_zero && !is_turned) || x.abs() >= stays {
-                continue;
-            }
-            if is_turned {
-                *x = low_bits(count) * f32::EPSILON * if up { 0.5 } else { -0.5 };
+            if numbers.next().is_multiple_of(3) || (*x == 0.0 && !is_zero) {
                 continue;
             }
             if *x == 0.0 {

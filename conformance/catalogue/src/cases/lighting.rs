@@ -57,7 +57,7 @@ formula!(
     |ld, md, l, n; out| { out.vector(lighting::diffuse_toward(ld, md, l, n)); },
     hard [
         Hard::new("edge-on", "0 at a right angle", &[("l", &[1.0, 0.0, 0.0]), ("n", &[0.0, 0.0, 1.0])]),
-        Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("l", &[1.0, 0.0, 1e-12]), ("n", &[0.0, 0.0, 1.0])]),
+        Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("l", &[1.0, 0.0, 1e-12]), ("n", &[0.0, 0.0, 1.0])]).at_an_end(),
         Hard::new("from-behind", "max, not abs and not the bare product", &[("l", &[0.0, 0.0, -1.0]), ("n", &[0.0, 0.0, 1.0])]),
     ],
 );
@@ -68,7 +68,7 @@ formula!(
     [LD, MD, Input::direction("i"), Input::direction("n")] -> [RGB],
     |ld, md, i, n; out| { out.vector(lighting::diffuse_travel(ld, md, i, n)); },
     hard [
-        Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("i", &[1.0, 0.0, -1e-12]), ("n", &[0.0, 0.0, 1.0])]),
+        Hard::new("least-lit", "1e-12 is above 0, too", &[("ld", WHITE), ("md", WHITE), ("i", &[1.0, 0.0, -1e-12]), ("n", &[0.0, 0.0, 1.0])]).at_an_end(),
     ],
 );
 formula!(
@@ -79,7 +79,7 @@ formula!(
     fit facing_vectors,
     |ls, ms, r, v, shininess; out| { out.vector(lighting::specular_phong(ls, ms, r, v, shininess)); },
     hard [
-        Hard::new("mirror", "1 at any shininess", &[("r", &[0.0, 0.0, 1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1e6])]),
+        Hard::new("mirror", "1 at any shininess", &[("r", &[0.0, 0.0, 1.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1e6])]).at_an_end(),
         Hard::new("edge-on", "0 at a right angle", &[("r", &[1.0, 0.0, 0.0]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
         Hard::new("barely-lit", "however small, a cosine above 0 counts", &[("r", &[0.999_999_9, 0.0, 6e-5]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),
         Hard::new("least-lit", "1e-12 is above 0, too", &[("ls", WHITE), ("ms", WHITE), ("r", &[1.0, 0.0, 1e-12]), ("v", &[0.0, 0.0, 1.0]), ("shininess", &[1.0])]),

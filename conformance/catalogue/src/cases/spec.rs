@@ -222,7 +222,7 @@ impl Hard {
         Self { naive: Some(Naive { formula, fails, at_least }), ..self }
     }
 
-    /// The same, at an end of what the formula is for: a few ULP away it has no meaning.
+    /// The same, at an end of what the formula is for: a few ULP away it has no meaning, or its unit vectors are none, which shows.
     #[must_use]
     pub const fn at_an_end(self) -> Self {
         Self { is_at_an_end: true, ..self }
