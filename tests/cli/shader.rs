@@ -42,7 +42,7 @@ const EXAMPLES: &[Example] = &[
     ("mistakes/normal-not-normalised.frag", "", "lighting/phong", &[], &["normal-not-normalised"]),
     ("mistakes/mirrored-the-wrong-way.wgsl", "", "lighting/phong", &[], &["view-reversed"]),
     ("mistakes/not-attenuated.frag", "", "lighting/point-blinn", &[], &["not-attenuated"]),
-    ("mistakes/no-cutoff.frag", "", "lighting/spot", &[], &["cutoff-of-90"]),
+    ("mistakes/no-cutoff.frag", "", "lighting/spot", &[], &["no-cutoff"]),
     ("mistakes/both-sides-lit.wgsl", "diffuse", "lighting/diffuse-toward", &[], &["incidence-of-both-sides"]),
     ("mistakes/fog-factor-turned.frag", "", "fog/linear", &[], &["fog-mixed-the-wrong-way"]),
     ("mistakes/fog-squared-once.glsl", "applyFog", "fog/exp2-opengl", &[], &["fog-exp2-document"]),
@@ -574,12 +574,12 @@ fn the_formula_that_is_meant_is_the_nearest_one_and_not_one_that_mistakes_lead_t
         std::fs::write(&file, text).expect("it is written");
         lightmeter(&["identify", &file.to_string_lossy()])
     };
-    // It normalises what is a unit vector, of which three hard cases are not quite ones. Phong's without two of its terms is far away.
+    // It normalises what is a unit vector already. Phong's without two of its terms is far away.
     let lambert = told(
         "uniform vec3 lightDir, lightColor, albedo; varying vec3 vNormal; void main() { gl_FragColor = \
          vec4(lightColor * albedo * max(dot(normalize(vNormal), normalize(lightDir)), 0.0), 1.0); }",
     );
-    assert!(stdout(&lambert).contains("The nearest is lighting/diffuse-toward"), "{}", stdout(&lambert));
+    assert!(stdout(&lambert).contains("computes lighting/diffuse-toward."), "{}", stdout(&lambert));
     let white = told("void main() { gl_FragColor = vec4(1.0); }");
     assert!(code(&white) == 2 && stderr(&white).contains("its result is always the same"), "{}", stderr(&white));
     let fog = told(
