@@ -255,11 +255,9 @@ fn expression(slot: &Variable, context: &Context<'_>, asked: &[AskedBinding]) ->
     let name = slot.name.trim_end_matches('_');
     // A normal that is a parameter is a unit vector, whatever the formula's is.
     let is_unit = slot.from == From::Parameter && name == "normal";
-    // Of a long name its capitals are the writer's taste.
-    let is_same = |input: &&Input| {
-        let letters = |name: &str| name.replace('_', "");
-        input.name == name || (name.len() > 3 && letters(input.name).eq_ignore_ascii_case(&letters(name)))
-    };
+    // Of a matrix the capitals are the writer's taste. Of others they are not: a shader's `Position` is not the light's.
+    let is_matrix = matches!(slot.leaf, Leaf::Matrix(..));
+    let is_same = |input: &&Input| input.name == name || (is_matrix && input.name.eq_ignore_ascii_case(name));
     let same = context.spec.inputs.iter().find(|input| is_same(input) && !is_unit && !is_of_surface(slot, context));
     if let Some(input) = same
         && let Some(fitted) = fitted(input.name, input.shape, slot.leaf, None)
@@ -578,6 +576,10 @@ mod tests {
             "uniform float Ka; uniform vec3 ambientColor; uniform float kLinear;",
             "Ka * ambientColor / (1.0 + kLinear)",
         );
+        let placed = lit(
+            "in vec3 Position; in vec3 Normal; uniform vec3 lightPosition;",
+            "Normal * dot(lightPosition - Position, Normal)",
+        );
         let layers = lit("uniform vec4 fg; uniform vec3 bg;", "fg.rgb * fg.a + bg * (1.0 - fg.a)");
         for (id, text, name, is) in [
             ("lighting/blinn", of_eye("vViewPosition"), "vViewPosition", "-p"),
@@ -585,6 +587,8 @@ mod tests {
             ("lighting/point-phong", weighted.clone(), "Ka", "1.0"),
             ("lighting/point-phong", weighted.clone(), "ambientColor", "la * ma"),
             ("lighting/point-phong", weighted.clone(), "kLinear", "kl"),
+            ("lighting/point-phong", placed.clone(), "Position", "p"),
+            ("lighting/point-phong", placed, "lightPosition", "position"),
             ("blend/over", layers.clone(), "fg", "src"),
             ("blend/over", layers, "bg", "dst"),
             ("lighting/point-phong", format!("\u{feff}{weighted}"), "kLinear", "kl"),
