@@ -78,6 +78,7 @@ fn what_is_no_result_of_a_run_is_no_baseline() {
         ("", "cannot read"),
         ("{\"schema\": \"lightmeter.list/1\"}", "expected lightmeter.report/2"),
         ("{\"schema\": \"lightmeter.run/1\"}", "it is of an earlier version, `lightmeter.run/1`"),
+        ("{\"schema\": \"lightmeter.report/3\"}", "it is of a later version, `lightmeter.report/3`"),
         ("{\"schema\": \"lightmeter.report/2\"}", "cannot read"),
     ] {
         std::fs::write(&baseline, text).expect("it can be written");

@@ -80,7 +80,7 @@ fn noise_is_explained_by_nothing() {
     let text = stdout(&output);
     assert_eq!(code(&output), 0, "{text}{}", stderr(&output));
     assert!(
-        text.starts_with("noise in the place of formulas: ") && text.contains(" answers, 0 explained, and "),
+        text.starts_with("noise in the place of formulas and scenes: ") && text.contains(" answers, 0 explained, and "),
         "{text}"
     );
     // What the mistaken formula gives itself is told, and is no failure.

@@ -338,7 +338,11 @@ fn a_damaged_checkpoint_is_refused_with_its_path_and_what_to_do() {
     let damages = [
         ("truncated", good[..good.len() / 2].to_owned(), "not JSON"),
         ("empty", String::new(), "not JSON"),
-        ("another schema", good.replace("lightmeter.sweep/1", "lightmeter.sweep/9"), "expected lightmeter.sweep/1"),
+        (
+            "another schema",
+            good.replace("lightmeter.sweep/1", "lightmeter.sweep/9"),
+            "it is of a later version, `lightmeter.sweep/9`",
+        ),
         ("another count", good.replace("\"done\": 2", "\"done\": 3"), "its checksum does not hold"),
         ("a field gone", good.replace("\"seconds\"", "\"minutes\""), "minutes"),
     ];

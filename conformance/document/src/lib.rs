@@ -70,6 +70,18 @@ pub enum ReadError {
         /// What has that schema.
         what: &'static str,
     },
+    /// It is of a later version than this program knows.
+    #[error(
+        "it is of a later version, `{found}`; expected {schema}, {what}: read it with a lightmeter that is not older than the one that wrote it"
+    )]
+    Later {
+        /// The schema that it names.
+        found: String,
+        /// The schema that this program reads.
+        schema: &'static str,
+        /// What has that schema.
+        what: &'static str,
+    },
     /// A field is missing, or is not what it should be.
     #[error("not {1}: {0}")]
     Field(String, &'static str),
@@ -117,6 +129,15 @@ fn schema<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()
 }
 
+/// Whether a schema is another's of a later version.
+fn is_later(found: &str, known: &str) -> bool {
+    let parts = |schema: &str| -> Option<(String, u32)> {
+        let (name, version) = schema.rsplit_once('/')?;
+        Some((name.to_owned(), version.parse().ok()?))
+    };
+    parts(found).zip(parts(known)).is_some_and(|(found, known)| found.0 == known.0 && found.1 > known.1)
+}
+
 fn read<T: Document + DeserializeOwned>(json: &str) -> Result<T, ReadError> {
     let Unique(value) = serde_json::from_str(json).map_err(|error| {
         let wrong = if error.is_data() { ReadError::Field } else { ReadError::Json };
@@ -127,6 +148,9 @@ fn read<T: Document + DeserializeOwned>(json: &str) -> Result<T, ReadError> {
             EARLIER.into_iter().find(|(found, by)| value["schema"] == *found && *by == T::SCHEMA)
         {
             return Err(ReadError::Earlier { found, schema, what: T::WHAT });
+        }
+        if let Some(found) = value["schema"].as_str().filter(|found| is_later(found, T::SCHEMA)) {
+            return Err(ReadError::Later { found: found.into(), schema: T::SCHEMA, what: T::WHAT });
         }
         let found = value["schema"].as_str().map_or_else(|| "none".into(), |name| format!("`{name}`"));
         return Err(ReadError::Schema { found, schema: T::SCHEMA, what: T::WHAT });

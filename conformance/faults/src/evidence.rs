@@ -17,7 +17,10 @@ pub(super) enum Fit {
 }
 
 /// An interval that is wider than this part of the range of right answers tells nothing of its output.
-const WIDE: f64 = 1.0 / 16.0;
+pub(crate) const WIDE: f64 = 1.0 / 16.0;
+
+/// How unlikely chance must be, in bits, beyond the logarithm of the number of candidates that were tried.
+pub(crate) const LEAST_EVIDENCE: f64 = 64.0;
 
 /// The bits that an interval leaves open of a number in it.
 pub(super) fn bits_left(value: f32, legal: &Accept) -> f64 {
@@ -29,6 +32,9 @@ pub(super) fn bits_left(value: f32, legal: &Accept) -> f64 {
 const BITS: f64 = 28.0;
 /// The bits that an answer costs which an explanation excludes.
 pub(super) const EXCLUDED: f64 = 100.0;
+
+/// The most bits that knowing which cases fail can give.
+pub(crate) const MOST_FORETOLD: f64 = 128.0;
 
 /// What the right formula says of the answers.
 pub(super) struct Right {
@@ -98,18 +104,18 @@ pub(super) fn is_inside(values: &[f32], legal: &[Accept]) -> bool {
 
 /// Which cases fail, and which would if a mistake were made: counts of cases.
 #[derive(Default)]
-pub(super) struct Foretold {
+pub(crate) struct Foretold {
     counts: [[usize; 2]; 2],
 }
 
 impl Foretold {
-    pub(super) fn take(&mut self, fails: bool, would_fail: bool) {
+    pub(crate) fn take(&mut self, fails: bool, would_fail: bool) {
         self.counts[usize::from(fails)][usize::from(would_fail)] += 1;
     }
 
     /// How many bits knowing which cases the mistake would make fail tells about which cases do fail. 0 if cases that fail are no more
     /// likely to be predicted to fail than cases that pass.
-    pub(super) fn bits(&self) -> f64 {
+    pub(crate) fn bits(&self) -> f64 {
         let [[a, b], [c, d]] = self.counts;
         let all = a + b + c + d;
         if c + d == 0 || a + b > 0 && share(d, c + d) <= share(b, a + b) {

@@ -51,7 +51,7 @@ const OTHERS: usize = 6;
 /// Echoes of inputs.
 const ECHOES: usize = 6;
 /// The part of the failing values that a mistaken formula has to give itself for the noise to be what it makes.
-const LEAST_GIVEN: f64 = 0.99;
+pub(crate) const LEAST_GIVEN: f64 = 0.99;
 
 /// Answers every kind of noise, with and without the right alpha, in every formula that a filter selects, and lists what is explained all the
 /// same. Once it is told to stop, it tries no other formula.
@@ -147,7 +147,7 @@ fn answers(bench: &Bench<'_>, noise: &Noise<'_>, alpha: Option<usize>) -> Vec<Ve
 }
 
 /// A number from 0 to 1 that depends on nothing.
-fn random(case: usize, output: usize) -> f64 {
+pub(crate) fn random(case: usize, output: usize) -> f64 {
     let bits = mix(mix(case as u64) ^ output as u64) >> 32;
     f64::from(u32::try_from(bits).unwrap_or_default()) / f64::from(u32::MAX)
 }

@@ -2,7 +2,7 @@
 
 use super::common::{in_common, share};
 use super::concerned::concerned;
-use super::evidence::{EXCLUDED, Fit, Foretold, Right, bits_left, is_inside, is_wrong};
+use super::evidence::{EXCLUDED, Fit, Foretold, LEAST_EVIDENCE, MOST_FORETOLD, Right, bits_left, is_inside, is_wrong};
 use super::explanation::{FormulaDiagnosis, TriedMistake, is_equal, rank, told};
 use super::factor::{self, Scaled};
 use super::fault::Concerned;
@@ -23,15 +23,11 @@ const MOST_OFF_OF_RANDOM: f64 = 0.015;
 const MOST_OFF: f64 = 0.1;
 /// The share of the random passing cases that would fail by it.
 const MOST_MISSING: f64 = 0.1;
-/// The bits of evidence that an explanation needs beyond those that it takes to say which of all that are tried it is.
-const LEAST_EVIDENCE: f64 = 64.0;
 /// The most bits of evidence that an output contributes where all answers to it are the same number although the mistake would have given
 /// another number in some case.
 const MOST_CONSTANT: f64 = 4.0;
 /// The bits that a wrong number tells at least where the mistake computes exactly that number.
 const OWN: f64 = 2.0;
-/// The most bits that knowing which cases fail can give.
-const MOST_FORETOLD: f64 = 128.0;
 /// The share of the wrong numbers that a mistake gives at least: that very number, or one within an interval that tells something. Of the tables'
 /// mistakes some leave much open, as a power of what is greater than 1 does. Those that follow from a formula's steps are many, so more is asked of
 /// them, and nearly all of two mistakes of which one is such.

@@ -77,7 +77,13 @@ pub struct RowStanding {
     pub right: RowSample,
     /// The rows counted as cases, where that is asked for, and those without a value.
     pub cases: CaseTally,
+    /// While a chunk is judged: those of its rows that may be kept, by their numbers in it, the wrong ones and the others. What is kept of a
+    /// row is copied once the chunk has been judged and it is known which stay.
+    chosen: [Sample<RowId, usize>; 2],
 }
+
+/// A formula of a group and a case of it.
+type RowId = (usize, CaseRef);
 
 impl RowStanding {
     /// The standing before anything is judged, of formulas with this number of outputs.
@@ -90,6 +96,7 @@ impl RowStanding {
             wrong: Sample::new(KEPT_FAILING),
             right: Sample::new(most_passing(outputs)),
             cases: CaseTally::default(),
+            chosen: [Sample::new(0), Sample::new(0)],
         }
     }
 
@@ -101,7 +108,13 @@ impl RowStanding {
             wrong: self.wrong.part(),
             right: self.right.part(),
             cases: CaseTally::default(),
+            chosen: self.chosen(),
         }
+    }
+
+    /// No rows yet of a chunk.
+    const fn chosen(&self) -> [Sample<RowId, usize>; 2] {
+        [self.wrong.part(), self.right.part()]
     }
 
     /// Judges what a stage gave for a chunk, on all cores, and adds the verdicts.
@@ -116,6 +129,7 @@ impl RowStanding {
                 part
             })
             .collect();
+        let [mut wrong, mut right] = self.chosen();
         for part in parts {
             let worst = part.tally.worst;
             self.tally.add(part.tally);
@@ -125,10 +139,14 @@ impl RowStanding {
             for (member, count) in part.failing {
                 *self.failing.entry(member).or_default() += count;
             }
-            self.wrong.add(part.wrong);
-            self.right.add(part.right);
+            let [more_wrong, more_right] = part.chosen;
+            wrong.add(more_wrong);
+            right.add(more_right);
             self.cases.add(part.cases);
         }
+        let kept = |_, case| kept(chunk, &answers.words, case, stage, by);
+        self.wrong.add(wrong.with(kept));
+        self.right.add(right.with(kept));
     }
 
     /// Judges a case of a chunk, or counts it as one without a value.
@@ -261,9 +279,9 @@ fn judge_values(
     let number = row_number(member.number, chunk.cases[case]);
     if standing.tally.totals.failed > failed {
         *standing.failing.entry(chunk.of[case]).or_default() += 1;
-        standing.wrong.push((chunk.of[case], chunk.cases[case]), number, kept);
+        standing.chosen[0].push((chunk.of[case], chunk.cases[case]), number, || case);
     } else if standing.tally.totals.expected_failures == pardoned {
-        standing.right.push((chunk.of[case], chunk.cases[case]), number, kept);
+        standing.chosen[1].push((chunk.of[case], chunk.cases[case]), number, || case);
     }
     (greatest, errors)
 }

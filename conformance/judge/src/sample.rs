@@ -39,8 +39,8 @@ impl<P: Copy + Ord, V> Sample<P, V> {
 
     /// An empty one to be added to this one later, which keeps nothing that this one would not.
     #[must_use]
-    pub const fn part(&self) -> Self {
-        Self { rows: vec![], most: self.most, seen: 0, bound: self.bound }
+    pub const fn part<W>(&self) -> Sample<P, W> {
+        Sample { rows: vec![], most: self.most, seen: 0, bound: self.bound }
     }
 
     /// Takes a row, which has a number that another one hardly ever has.

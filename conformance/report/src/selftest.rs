@@ -130,7 +130,7 @@ pub fn noise(record: &NoiseRecord) -> String {
     let wrong = record.explained.iter().filter(|one| !one.is_made).count();
     let made = record.explained.len() - wrong;
     let mut text = format!(
-        "noise in the place of formulas: {} answers, {wrong} explained, and {made} that the mistaken formula gives itself\n",
+        "noise in the place of formulas and scenes: {} answers, {wrong} explained, and {made} that the mistaken formula gives itself\n",
         thousands(record.tried)
     );
     for one in &record.explained {

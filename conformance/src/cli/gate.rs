@@ -90,7 +90,7 @@ pub(crate) struct Gate {
     #[command(flatten)]
     comparison: Comparison,
     /// Of a shard: leave the samples out by which `merge` tells what explains failures
-    #[arg(long)]
+    #[arg(long, requires = "shard")]
     no_samples: bool,
     #[command(flatten)]
     required: Required,

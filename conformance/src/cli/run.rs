@@ -75,7 +75,7 @@ pub(crate) struct Run {
     #[command(flatten)]
     comparison: Comparison,
     /// Of a shard: leave the samples out by which `merge` tells what explains failures
-    #[arg(long)]
+    #[arg(long, requires = "shard")]
     no_samples: bool,
     #[command(flatten)]
     required: Required,

@@ -19,6 +19,7 @@ use lightmeter::document::selftest::{
 use lightmeter::faults::calibrate::{CASES, calibrate};
 use lightmeter::faults::noise::noise;
 use lightmeter::faults::scene::calibrate::calibrate as measure;
+use lightmeter::faults::scene::noise::noise as scene_noise;
 use lightmeter::faults::scene::selftest as scenes;
 use lightmeter::faults::selftest as formulas;
 use lightmeter::faults::{Fault, LEAST_SHARE, LEAST_Z, faults, generated};
@@ -48,7 +49,7 @@ enum Part {
     BlendUnit,
     /// Mistakes of whole renderers, in the built-in scenes.
     Scenes,
-    /// Noise in the place of formulas, which nothing may explain. It takes long, and runs only where it is named.
+    /// Noise in the place of formulas and scenes, which nothing may explain. It takes long, and runs only where it is named.
     Noise,
 }
 
@@ -163,7 +164,13 @@ impl Selftest {
             self.test_formulas(filter, stop, &mut say, &mut tested)?;
         } else if self.only == Some(Part::Noise) {
             say("noise in the place of every formula");
-            tested.noise = Some(noise(&self.options(filter, stop), &|formula| happens("tried", formula)));
+            let options = self.options(filter, stop);
+            let mut record = noise(&options, &|formula| happens("tried", formula));
+            let mut progress = |id: &str| say(&format!("noise in the place of {id}"));
+            let scenes = scene_noise(SCENE_SIZE, &options, &mut progress)?;
+            record.tried += scenes.tried;
+            record.explained.extend(scenes.explained);
+            tested.noise = Some(record);
         }
         let is_asked = |part| self.wants(part) && self.filter.is_empty() && !stop.is_set();
         if is_asked(Part::Scenes) {

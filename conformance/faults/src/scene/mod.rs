@@ -4,10 +4,11 @@
 pub mod calibrate;
 mod diagnose;
 mod look;
+pub mod noise;
 pub mod selftest;
 mod table;
 
-pub use diagnose::{SceneDiagnosis, SceneExplanation, Trial};
+pub use diagnose::{Part, SceneDiagnosis, SceneExplanation, Trial};
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_judge::image::judge;
@@ -146,6 +147,23 @@ mod tests {
         change(&mut changed);
         let image = draw::<f32>(&changed, &[]);
         Trial::new(&frame, &image, &expect(&frame, None, None, &WGSL), &WGSL).diagnose()
+    }
+
+    #[test]
+    fn a_wrong_alpha_hides_no_cause_of_a_wrong_color() {
+        let frame = frame("phong");
+        let mut image = draw::<f32>(&frame, &[mistake("diffuse-left-out")]);
+        // Of alpha, what nothing in the catalogue does.
+        for (place, pixel) in image.pixels.iter_mut().enumerate() {
+            pixel[3] = f64::from(u32::try_from(place * 37 % 200).expect("it is small"));
+        }
+        let found = Trial::new(&frame, &image, &expect(&frame, None, None, &WGSL), &WGSL).diagnose();
+        assert!(found.explanations.is_empty() && found.parts.len() == 2, "{}", found.diagnosis);
+        let named = |part: usize| found.parts[part].1.first().map(|best| best.faults[0].name);
+        assert_eq!((found.parts[0].0, named(0)), (Part::Color, Some("diffuse-left-out")), "{}", found.diagnosis);
+        assert_eq!((found.parts[1].0, named(1)), (Part::Alpha, None), "{}", found.diagnosis);
+        let told = found.diagnosis.to_string();
+        assert!(told.contains("wrong values of color are explained by: the diffuse term is left out"), "{told}");
     }
 
     #[test]

@@ -275,7 +275,7 @@ faults! {
     };
     Frame "cutout-left-out" "nothing is cut out" |frame| each_draw(frame, |draw| draw.cutout = None);
     // Where pixels are.
-    Frame "half-pixel" "all is half a pixel to the right and down" @ "Direct3D 9" |frame| shift(frame, [0.5, 0.5]);
+    Frame "half-pixel" "all is half a pixel to the right and down, as if pixels were sampled at their upper left corners" @ "Direct3D 9" |frame| shift(frame, [0.5, 0.5]);
     Frame "mirrored" "the image is mirrored" @ "a left-handed camera for a right-handed one" |frame| scale(frame, 0, -1.0);
     Frame "background-black" "the background is black" |frame| frame.background = [0.0, 0.0, 0.0, frame.background[3]];
     Place "upside-down" "the image is upside down" @ "OpenGL's origin for WebGPU's" |[x, y], [_, height]| [x, height - 1 - y];
@@ -295,7 +295,7 @@ faults! {
     Frame "spot-exponent-fourfold" "a spotlight's exponent is 4 times what was asked" |frame| each_place(frame, |place| if let Place::Spot { exponent, .. } = place { *exponent *= 4.0 });
     Frame "spot-axis-reversed" "spotlights point the other way" |frame| each_place(frame, |place| if let Place::Spot { axis, .. } = place { negate(axis) });
     Frame "fog-density-squared" "the fog's density is squared" |frame| each_fog(frame, |fog| if let FogForm::Exp { density } | FogForm::Exp2Document { density } | FogForm::Exp2OpenGl { density } = &mut fog.form { *density *= *density });
-    Frame "sampled-at-the-pixel-corner" "a pixel is sampled at its upper left corner, not at its middle" @ "Direct3D 9" |frame| shift(frame, [-0.5, -0.5]);
+    Frame "half-pixel-reversed" "all is half a pixel to the left and up, as if pixels were sampled at their lower right corners" @ "corrections for Direct3D 9 that are kept elsewhere" |frame| shift(frame, [-0.5, -0.5]);
     Color "in-half-precision" "the image is held in half precision" @ "mediump; rgba16float targets" |pixel| each_color(pixel, |c| c.in_half(Narrowing::Rounded));
     Color "in-8-bits" "the image is held in 8 bits on its way" @ "intermediate targets of 8 bits" |pixel| each_color(pixel, |c| (255.0 * c.clamp(0.0, 1.0)).round_ties_even() / 255.0);
     Color "srgb-encoded-twice" "colours are encoded for sRGB twice" @ "an sRGB target beneath a shader that encodes" |pixel| each_color(pixel, |c| color::srgb_encode(color::srgb_encode(c.clamp(0.0, 1.0))));

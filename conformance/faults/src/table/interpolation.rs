@@ -102,18 +102,18 @@ pub(super) const FAULTS: &[Fault] = &[
     .seen_in("OpenGL's clip space in WebGPU, and the reverse"),
     fault(
         "half-pixel-offset",
-        "everything is half a pixel to the right and down",
-        &[&[input("p", Op::Offset(0.5))], &[input("pixel", Op::Offset(0.5))], &[input("origin", Op::Offset(0.5))]],
+        "everything lies half a pixel too far along x and y, as if pixels were sampled at the corner where both are least",
+        &[&[input("p", Op::Offset(-0.5))], &[input("pixel", Op::Offset(-0.5))], &[input("origin", Op::Offset(0.5))]],
     )
     .only(where_half_a_pixel_shows)
     .seen_in("Direct3D 9"),
     fault(
-        "sampled-at-the-pixel-corner",
-        "a pixel is sampled at its upper left corner, not at its middle",
-        &[&[input("p", Op::Offset(-0.5))], &[input("pixel", Op::Offset(-0.5))], &[input("origin", Op::Offset(-0.5))]],
+        "half-pixel-offset-reversed",
+        "everything lies half a pixel short along x and y, as if pixels were sampled at the corner where both are greatest",
+        &[&[input("p", Op::Offset(0.5))], &[input("pixel", Op::Offset(0.5))], &[input("origin", Op::Offset(-0.5))]],
     )
     .only(where_half_a_pixel_shows)
-    .seen_in("software rasterisers"),
+    .seen_in("corrections for Direct3D 9 that are kept elsewhere"),
     fault(
         "other-clip-volume",
         "the clip volume is the other convention's",

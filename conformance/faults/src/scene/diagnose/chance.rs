@@ -1,13 +1,12 @@
 //! Whether an explanation says more than chance would.
 
-use super::{Trial, real, slack, stored};
+use super::{Trial, slack, stored};
+use crate::evidence::{Foretold, MOST_FORETOLD, WIDE};
 use std::collections::HashSet;
 
-/// The most bits that a component can contribute: the first number in general, the second where its value is the darkest or the brightest
-/// that can be stored, since such a value only tells the direction of the error.
-const BITS: [f64; 2] = [8.0, 1.0];
-/// Bits that where pixels fail may tell at most.
-const PLACES: f64 = 18.0;
+/// The most bits that a component can contribute: the first number in general, more than which no store in 8 bits has; the second where its
+/// value is the darkest or the brightest that can be stored, since such a value only tells the direction of the error.
+const BITS: [f64; 2] = [16.0, 1.0];
 
 impl Trial<'_> {
     /// How unlikely it is that chance would explain as much, in bits. A component that is explained tells the more, the narrower what is
@@ -20,6 +19,13 @@ impl Trial<'_> {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
         };
         let ranges: [[f64; 2]; 4] = std::array::from_fn(|k| if is_unorm { [0.0, 255.0] } else { ends(k) });
+        // A component of which a mistake leaves so much open tells nothing, be it legal or not; of a store in steps, one tells.
+        let right: Vec<[f64; 4]> = self.right.iter().map(|&color| stored(format, color)).collect();
+        let widest: [f64; 4] = std::array::from_fn(|k| {
+            let all = right.iter().map(|pixel| pixel[k]).filter(|value| value.is_finite());
+            let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            (WIDE * (high - low)).max(0.0)
+        });
         let mut told = HashSet::new();
         let mut bits = 0.0;
         for &(place, k) in &self.failing_there {
@@ -31,19 +37,22 @@ impl Trial<'_> {
             let [darkest, brightest] = ranges[k];
             let is_at_an_end = is_unorm && (value <= darkest || value >= brightest);
             let step = if is_unorm { 1.0 } else { slack(format, value) };
+            if high - low > widest[k].max(step) {
+                continue;
+            }
             // What comes near to the value that the mistake draws tells as much as narrow bounds do.
             let apart = 2.0 * (value - drawn[place][k]).abs() + step;
             let specific = ((brightest - darkest).max(step) / ((high - low).min(apart) + step)).log2();
             bits += specific.clamp(0.0, BITS[usize::from(is_at_an_end)]);
         }
-        // A pixel that a mistake would change, and that passes, tells nothing of where it is made.
+        // Where a mistake changes what fails and leaves what passes, that tells something, too.
         let is_changed = |place: usize| {
-            let right = stored(format, self.right[place]);
-            (0..4).any(|k| (right[k] - drawn[place][k]).abs() > slack(format, right[k]))
+            let right = right[place];
+            self.part.components().any(|k| (right[k] - drawn[place][k]).abs() > slack(format, right[k]))
         };
         let wrong: HashSet<usize> = self.failing_there.iter().map(|&(place, _)| place).collect();
-        let changed = wrong.iter().filter(|&&place| is_changed(place)).count();
-        let left = (0..self.looked_at.len()).filter(|place| !wrong.contains(place) && !is_changed(*place)).count();
-        bits + (2.0 * real(changed.min(left) + 1).log2()).min(PLACES)
+        let mut foretold = Foretold::default();
+        (0..self.looked_at.len()).for_each(|place| foretold.take(wrong.contains(&place), is_changed(place)));
+        bits + foretold.bits().min(MOST_FORETOLD)
     }
 }

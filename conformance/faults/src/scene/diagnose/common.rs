@@ -1,30 +1,35 @@
 //! What failing components have in common where nothing explains them.
 
-use super::{NAMES, Trial, real};
+use super::{NAMES, Part, Trial, real};
 
 /// What failing components have in common is told where so large a part of them has it.
 const COMMON: f64 = 0.95;
 
 impl Trial<'_> {
-    /// The colour of an image whose pixels are all the same, in the target's units; `None` for any other image. Such an image shows nothing
-    /// about which mistake was made.
+    /// The colour of an image whose pixels are all the same in these components, in the target's units; `None` for any other image. Such an
+    /// image shows nothing about which mistake was made.
     pub(super) fn flat(&self) -> Option<[f64; 4]> {
         let (first, rest) = self.image.pixels.split_first()?;
-        let is_same = |pixel: &[f64; 4]| pixel.iter().zip(first).all(|(a, b)| a.to_bits() == b.to_bits());
+        let is_same = |pixel: &[f64; 4]| self.part.components().all(|k| pixel[k].to_bits() == first[k].to_bits());
         (!rest.is_empty() && rest.iter().all(is_same)).then_some(*first)
     }
 
     /// What failing components have in common where nothing explains them.
     pub(super) fn in_common(&self) -> Vec<String> {
         if let Some([r, g, b, a]) = self.flat() {
-            return vec![format!("the whole image is {r} {g} {b} {a}")];
+            return vec![match self.part {
+                Part::Whole => format!("the whole image is {r} {g} {b} {a}"),
+                Part::Color => format!("the whole image is {r} {g} {b}"),
+                Part::Alpha => format!("alpha is {a} in the whole image"),
+            }];
         }
         [self.component(), self.sign(), self.region()].into_iter().flatten().collect()
     }
 
     /// The one component that nearly all failing ones are of.
     fn component(&self) -> Option<String> {
-        (0..4).find_map(|k| {
+        let components = if self.part == Part::Alpha { 0..0 } else { 0..4 };
+        components.into_iter().find_map(|k| {
             let how_many = self.share(|number| number % 4 == k)?;
             Some(format!("{how_many} are {}", NAMES[k]))
         })

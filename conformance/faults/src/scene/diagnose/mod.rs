@@ -6,8 +6,9 @@ mod common;
 mod parameter;
 
 use super::{SCENE_FAULTS, SceneFault, colors, draw, draw_at, places, with};
+use crate::evidence::LEAST_EVIDENCE;
 use lightmeter_arithmetic::Profile;
-use lightmeter_document::report::{Counted, Diagnosis, Explanation, Standing, Telling, ToldApart};
+use lightmeter_document::report::{Counted, Diagnosis, Explanation, PartDiagnosis, Standing, Telling, ToldApart};
 use lightmeter_document::{Number, Word};
 use lightmeter_judge::blend_unit::pixel;
 use lightmeter_judge::image::LegalPixel;
@@ -19,6 +20,7 @@ use parameter::{FACTORS, PARAMETERS, STEPS, Scaled};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::cmp::Reverse;
+use std::ops::Range;
 
 /// Pixels that are looked at, of those that fail and of those that do not.
 const LOOKED_AT: usize = 512;
@@ -36,8 +38,6 @@ const MOST_CONTRADICTED: f64 = 0.02;
 const STEP_ERROR: f64 = 1e-6;
 /// Explanations that are tried with all that is legal.
 const MOST_TRIED: usize = 5;
-/// How unlikely chance must be, in bits, beyond the number of mistakes that are tried.
-const BEYOND_CHANCE: f64 = 10.0;
 
 /// What may have been drawn in a frame's place.
 #[derive(Clone, Debug)]
@@ -65,8 +65,39 @@ pub struct SceneDiagnosis {
     pub failing: usize,
     /// The best first.
     pub explanations: Vec<SceneExplanation>,
+    /// Where nothing explains whole pixels: what explains colour and alpha, each by itself.
+    pub parts: Vec<(Part, Vec<SceneExplanation>)>,
     /// What a report says of it.
     pub diagnosis: Diagnosis,
+}
+
+/// Components of pixels that are diagnosed together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All four.
+    Whole,
+    /// Red, green and blue.
+    Color,
+    /// Alpha.
+    Alpha,
+}
+
+impl Part {
+    const fn components(self) -> Range<usize> {
+        match self {
+            Self::Whole => 0..4,
+            Self::Color => 0..3,
+            Self::Alpha => 3..4,
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "pixels",
+            Self::Color => "color",
+            Self::Alpha => "color.a",
+        }
+    }
 }
 
 /// An image and all that is known of it.
@@ -75,6 +106,8 @@ pub struct Trial<'a> {
     image: &'a StoredImage,
     expected: &'a [LegalPixel],
     profile: &'a Profile,
+    /// The components that it is of: others count neither as failing nor as passing.
+    part: Part,
     /// Components that fail, and those that pass and are not of marked pixels.
     failing: Vec<usize>,
     passing: usize,
@@ -113,13 +146,24 @@ impl<'a> Trial<'a> {
     /// An image with what is legal of it.
     #[must_use]
     pub fn new(frame: &'a Frame, image: &'a StoredImage, expected: &'a [LegalPixel], profile: &'a Profile) -> Self {
+        Self::of(Part::Whole, frame, image, expected, profile)
+    }
+
+    fn of(
+        part: Part,
+        frame: &'a Frame,
+        image: &'a StoredImage,
+        expected: &'a [LegalPixel],
+        profile: &'a Profile,
+    ) -> Self {
+        let components = part.components();
         let (mut failing, mut passing) = (vec![], 0);
         let (mut wrong, mut right) = (vec![], vec![]);
         for (number, (value, legal)) in image.pixels.iter().zip(expected).enumerate() {
             let before = failing.len();
-            failing.extend((0..4).filter(|&k| !is_within(value, legal, k)).map(|k| 4 * number + k));
+            failing.extend(components.clone().filter(|&k| !is_within(value, legal, k)).map(|k| 4 * number + k));
             let found = failing.len() - before;
-            passing += if legal.is_marked { 0 } else { 4 - found };
+            passing += if legal.is_marked { 0 } else { components.len() - found };
             if found > 0 {
                 wrong.push(number);
             } else {
@@ -131,7 +175,7 @@ impl<'a> Trial<'a> {
         let (mut failing_there, mut passing_there) = (vec![], vec![]);
         for (place, &number) in looked_at.iter().enumerate() {
             let (value, legal) = (&image.pixels[number], &expected[number]);
-            for k in 0..4 {
+            for k in components.clone() {
                 if !is_within(value, legal, k) {
                     failing_there.push((place, k));
                 } else if !legal.is_marked {
@@ -140,16 +184,37 @@ impl<'a> Trial<'a> {
             }
         }
         let right = lightmeter_reference::render::render_at::<f64>(frame, &looked_at);
-        Self { frame, image, expected, profile, failing, passing, looked_at, failing_there, passing_there, right }
+        Self { frame, image, expected, profile, part, failing, passing, looked_at, failing_there, passing_there, right }
     }
 
-    /// Tries what the catalogue knows.
+    /// Tries what the catalogue knows: of whole pixels, and where nothing explains them, of colour and alpha apart.
     #[must_use]
     pub fn diagnose(&self) -> SceneDiagnosis {
+        let mut found = self.diagnosed();
+        if found.failing > 0 && found.explanations.is_empty() {
+            let parts: Vec<(Part, SceneDiagnosis)> = [Part::Color, Part::Alpha]
+                .map(|part| (part, Self::of(part, self.frame, self.image, self.expected, self.profile).diagnosed()))
+                .into_iter()
+                .filter(|(_, found)| found.failing > 0)
+                .collect();
+            if parts.len() > 1 && parts.iter().any(|(_, found)| !found.explanations.is_empty()) {
+                for (part, SceneDiagnosis { explanations, diagnosis, .. }) in parts {
+                    let failing = diagnosis.looked_at;
+                    let told = PartDiagnosis::new(part.name().to_owned(), Diagnosis { failing, ..diagnosis });
+                    found.parts.push((part, explanations));
+                    found.diagnosis.parts.push(told);
+                }
+            }
+        }
+        found
+    }
+
+    /// What explains the components of this part.
+    fn diagnosed(&self) -> SceneDiagnosis {
         let failing = self.failing.len();
         if failing == 0 {
             let diagnosis = Diagnosis { counts: Counted::Components, ..Diagnosis::default() };
-            return SceneDiagnosis { failing, explanations: vec![], diagnosis };
+            return SceneDiagnosis { failing, explanations: vec![], parts: vec![], diagnosis };
         }
         if self.flat().is_some() {
             return self.told(vec![]);
@@ -166,7 +231,7 @@ impl<'a> Trial<'a> {
             found = self.tried(self.near(pairs));
         }
         // An explanation that is no better than chance is dropped, and no more complicated explanation is tried in its place.
-        found.retain(|one| one.evidence >= real(candidates).log2() + BEYOND_CHANCE);
+        found.retain(|one| one.evidence >= real(candidates).log2() + LEAST_EVIDENCE);
         self.told(found)
     }
 
@@ -198,7 +263,7 @@ impl<'a> Trial<'a> {
             }
         }
         let failing = self.failing.len();
-        SceneDiagnosis { failing, explanations, diagnosis }
+        SceneDiagnosis { failing, explanations, parts: vec![], diagnosis }
     }
 
     /// The mistakes that change something, the nearest first.
@@ -310,7 +375,7 @@ impl<'a> Trial<'a> {
         let drawn = draw::<f64>(&made.base(self.frame), &made.faults);
         let far: Vec<(usize, usize)> = (0..drawn.pixels.len())
             .filter(|&number| !self.expected[number].is_marked)
-            .flat_map(|number| (0..4).map(move |k| (number, k)))
+            .flat_map(|number| self.part.components().map(move |k| (number, k)))
             .filter(|&(number, k)| {
                 let (value, there) = (self.image.pixels[number][k], drawn.pixels[number][k]);
                 let is_far = (value - there).abs() > slack(self.image.format, value);
@@ -353,6 +418,21 @@ impl<'a> Trial<'a> {
     }
 }
 
+impl Trial<'_> {
+    /// The part of the failing components that a renderer which makes these mistakes gives itself.
+    pub(super) fn given(&self, one: &SceneExplanation, part: Part) -> f64 {
+        let made = Made { faults: one.faults.clone(), scaled: one.scaled };
+        let drawn = draw::<f32>(&made.base(self.frame), &made.faults);
+        let failing: Vec<usize> =
+            self.failing.iter().copied().filter(|number| part.components().contains(&(number % 4))).collect();
+        let is_given = |&&number: &&usize| {
+            let (value, drawn) = (self.image.pixels[number / 4][number % 4], drawn.pixels[number / 4][number % 4]);
+            value.to_bits() == drawn.to_bits() || (value - drawn).abs() <= slack(self.image.format, value)
+        };
+        real(failing.iter().filter(is_given).count()) / real(failing.len().max(1))
+    }
+}
+
 /// What tells two explanations apart.
 enum Telltale {
     /// Nothing that is seen in the digits of a value that are shown.
@@ -375,12 +455,18 @@ fn pairs(near: &[Near]) -> Vec<Vec<&'static SceneFault>> {
 }
 
 impl SceneExplanation {
-    /// As a report has it.
-    fn told(&self, standing: Standing) -> Explanation {
+    /// In words, as the end of a sentence.
+    #[must_use]
+    pub fn says(&self) -> String {
         let scaled = self.scaled.map(Scaled::says);
         let faults = self.faults.iter().map(|fault| fault.says.to_owned());
+        scaled.into_iter().chain(faults).collect::<Vec<_>>().join(", and ")
+    }
+
+    /// As a report has it.
+    fn told(&self, standing: Standing) -> Explanation {
         Explanation {
-            says: scaled.into_iter().chain(faults).collect::<Vec<_>>().join(", and "),
+            says: self.says(),
             mistakes: self.faults.iter().map(|fault| Word::from(fault.name)).collect(),
             parameter: self.scaled.map(Scaled::told),
             explained: self.explained as u64,
