@@ -83,10 +83,11 @@ pub fn weights<R: Real>([a, b, c]: [Vec2<R>; 3], p: Vec2<R>) -> [R; 3] {
 /// Equal to [`triangle`] wherever y1 ≠ y2, y1 ≠ y3 and xa ≠ xb. Source: 004.
 pub fn scanline<R: Real>(vertices: [Vec2<R>; 3], i: [R; 3], p: Vec2<R>) -> R {
     let [v1, v2, v3] = vertices;
-    let along = |near: R, far: R, top: R, bottom: R| (near * (p.y() - bottom) + far * (top - p.y())) / (top - bottom);
+    let (x, y) = (p.x(), p.y());
+    let along = |near: R, far: R, top: R, bottom: R| step!(quiet "along an edge", |near, far, top, bottom, y| (near * (y - bottom) + far * (top - y)) / (top - bottom));
     let (ia, xa) = (along(i[0], i[1], v1.y(), v2.y()).named("Ia"), along(v1.x(), v2.x(), v1.y(), v2.y()).named("xa"));
     let (ib, xb) = (along(i[0], i[2], v1.y(), v3.y()).named("Ib"), along(v1.x(), v3.x(), v1.y(), v3.y()).named("xb"));
-    (ia * (xb - p.x()) + ib * (p.x() - xa)) / (xb - xa)
+    step!(quiet "along the span", |ia, ib, xa, xb, x| (ia * (xb - x) + ib * (x - xa)) / (xb - xa))
 }
 
 /// The span's end reached by forward differences: `a` and then N − 1 times the step `(b − a)/(N − 1)`. Source: 004.

@@ -35,7 +35,9 @@ def report(bug: dict[str, Any], copy: Path) -> dict[str, Any]:
         "numpy": ["gate", "--exec", f"'{PYTHON}' '{copy / 'renderer.py'}'"],
     }[bug["side"]]
     options = ["--cases", "256", "--format", "json", "--out", str(result)]
-    subprocess.run([LIGHTMETER, *subject, *bug["filter"], *options], capture_output=True, check=False)
+    # The copy of a renderer does not lie beside the client that it imports.
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "clients/python")}
+    subprocess.run([LIGHTMETER, *subject, *bug["filter"], *options], capture_output=True, check=False, env=environment)
     return json.loads(result.read_text())
 
 

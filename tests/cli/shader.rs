@@ -495,6 +495,72 @@ fn a_shader_that_discards_or_has_no_end_fails() {
     assert_eq!(code(&output), 1, "{}", stderr(&output));
 }
 
+/// Shaders as people write them, each right: what they are given and give is declared in ways that naga does not read.
+const DIALECTS: [(&str, &str); 7] = [
+    (
+        "old-mac.frag",
+        "#version 330\rin vec3 p; // the place\runiform vec3 fog, shaded;\runiform float density;\rout vec4 o;\r\
+         void main() {\r  o = vec4(mix(fog, shaded, exp(-density * abs(p.z))), 1.0);\r}\r",
+    ),
+    (
+        "data.frag",
+        "varying vec3 p;\nuniform vec3 fog, shaded;\nuniform float density;\n\
+         void main() { gl_FragData[1] = vec4(p, 1.0); gl_FragData[0] = vec4(mix(fog, shaded, exp(-density * abs(p.z))), 1.0); }",
+    ),
+    (
+        "names.frag",
+        "varying vec3 p;\nuniform vec3 fog;\nuniform sampler2D sampler;\nuniform float density;\n\
+         void main() {\n  vec4 sample = texture2D(sampler, vec2(0.5));\n  float patch = exp(-density * abs(p.z));\n  \
+         gl_FragColor = vec4(mix(fog, sample.rgb, patch), 1.0);\n}",
+    ),
+    (
+        "bright.frag",
+        "#version 330\nlayout(location = 1) out vec4 bright;\nlayout(location = 0) out vec4 shown;\nin vec3 p;\n\
+         uniform vec3 fog, shaded;\nuniform float density;\n\
+         void main() { shown = vec4(mix(fog, shaded, exp(-density * abs(p.z))), 1.0); bright = max(shown - 1.0, 0.0); }",
+    ),
+    (
+        "fixed-function.frag",
+        "varying vec3 p;\nuniform vec3 shaded;\n\
+         void main() { gl_FragColor = vec4(mix(gl_Fog.color.rgb, shaded, exp(-gl_Fog.density * abs(p.z))), 1.0); }",
+    ),
+    (
+        "beside.frag",
+        "#version 330\nout vec4 o;\nvec3 foggy(vec3 fog, vec3 shaded, float density, vec3 p) { return mix(fog, shaded, exp(-density * abs(p.z))); }\n\
+         void main() { o = vec4(foggy(vec3(1.0), vec3(0.0), 1.0, vec3(0.0)), 1.0); }",
+    ),
+    (
+        "constants.glsl",
+        "const float ONE = 1.0;\nconst float UNUSED = 3.0;\n\
+         vec3 foggy(vec3 fog, vec3 shaded, float density, vec3 p) { return mix(fog, shaded, exp(-ONE * density * abs(p.z))); }\n",
+    ),
+];
+
+#[test]
+fn shaders_of_all_dialects_are_read() {
+    if crate::needs::lacks_lavapipe() {
+        return;
+    }
+    let folder = folder("dialects");
+    for (name, text) in DIALECTS {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("it can be written");
+        let file = path.display().to_string();
+        let judged = if text.contains("foggy") {
+            ["--function".to_owned(), format!("foggy@{file}")]
+        } else {
+            ["--shader".to_owned(), file]
+        };
+        let [option, value] = judged.each_ref().map(String::as_str);
+        let output = lightmeter(&["run", "fog/exp", "--cases", "64", option, value]);
+        assert_eq!(code(&output), 0, "{name}: {}{}", stdout(&output), stderr(&output));
+        let wrong = std::fs::read_to_string(&path).expect("it is there").replace("abs(p.z)", "length(p)");
+        std::fs::write(&path, wrong).expect("it can be written");
+        let output = lightmeter(&["run", "fog/exp", "--cases", "64", option, value]);
+        assert!(code(&output) == 1 && stdout(&output).contains("(fog-radial)"), "{name}: {}", stdout(&output));
+    }
+}
+
 #[test]
 fn the_page_has_all_names() {
     let page = include_str!("../../docs/shaders.md");

@@ -463,9 +463,15 @@ fn outputs(program: &ShaderProgram, spec: &Spec) -> Result<Vec<(&'static str, Op
     let given = |name: &str, shape: ValueShape| {
         let wanted = leaf_of(shape)?;
         let named = program.outputs.iter().find(|output| output.name == name && size(output.leaf).is_some());
+        // Of several the one at location 0.
         let only = || {
-            let mut fitting = program.outputs.iter().filter(|output| fits(output, wanted).is_some());
-            fitting.next().filter(|_| fitting.next().is_none())
+            let fitting: Vec<&ShaderOutput> =
+                program.outputs.iter().filter(|output| fits(output, wanted).is_some()).collect();
+            let first: Vec<&ShaderOutput> = fitting.iter().copied().filter(|output| !output.is_further).collect();
+            match (fitting.as_slice(), first.as_slice()) {
+                ([one], _) | (_, [one]) => Some(*one),
+                _ => None,
+            }
         };
         named.and_then(|output| fits(output, wanted)).or_else(|| fits(only()?, wanted))
     };
@@ -503,20 +509,22 @@ fn unused(spec: &Spec, bound: &[Bound], outputs: &[(&'static str, Option<String>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::ShaderSource;
+    use crate::source::{Language, ShaderSource};
     use crate::suggest::as_glsl;
     use crate::{Part, replaced};
     use lightmeter_catalogue::cases::Kind;
     use lightmeter_catalogue::select::catalogue;
     use lightmeter_gpu::Shaders;
-    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::path::{Path, PathBuf};
+
+    fn read(path: &Path, text: &str) -> Result<ShaderSource, AdaptError> {
+        ShaderSource::of_text(path, text, Language::of(path)?)
+    }
 
     /// Each formula of lighting, fog and attenuation is bound by the names that our own functions have, in WGSL and as naga writes it in GLSL.
     #[test]
     fn every_formula_of_ours_is_bound_by_its_own_names() {
         let shaders = Shaders::built_in().expect("the built-in shaders are valid");
-        let folder = std::env::temp_dir().join(format!("lightmeter-bind-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder can be made");
         let mut bound = 0;
         for member in catalogue() {
             let spec = &member.spec;
@@ -528,9 +536,8 @@ mod tests {
             let file = spec.file();
             let glsl = as_glsl(&shaders, &file, spec.function).expect(spec.function);
             for (ending, text) in [("wgsl", shaders.source(&file)), ("glsl", glsl)] {
-                let path = folder.join(format!("{}.{ending}", spec.function));
-                std::fs::write(&path, &text).expect("it can be written");
-                let source = ShaderSource::read(&path).unwrap_or_else(|error| panic!("{error}\n{text}"));
+                let path = PathBuf::from(format!("{}.{ending}", spec.function));
+                let source = read(&path, &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
                 // naga puts an underscore behind a digit.
                 let names = [spec.function.to_owned(), format!("{}_", spec.function)];
                 let name = names.iter().find(|name| text.contains(&format!("{name}("))).expect(spec.function);
@@ -542,23 +549,14 @@ mod tests {
                 bound += 1;
             }
         }
-        std::fs::remove_dir_all(&folder).expect("it can be removed");
         assert!(bound > 100, "{bound}");
     }
 
     /// What the variables of a fragment shader in GLSL, or of a function of it, are bound to.
     fn binding(id: &str, text: &str, part: &Part) -> Result<Vec<(String, String)>, String> {
-        // Tests of a program run side by side.
-        static FOLDERS: AtomicUsize = AtomicUsize::new(0);
-        let number = FOLDERS.fetch_add(1, Ordering::Relaxed);
-        let folder = std::env::temp_dir().join(format!("lightmeter-names-{}-{number}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder can be made");
-        let path = folder.join("shader.frag");
-        std::fs::write(&path, text).expect("it can be written");
-        let source = ShaderSource::read(&path).map_err(|error| error.to_string());
-        std::fs::remove_dir_all(&folder).expect("it can be removed");
-        let source = source?;
-        let program = ShaderProgram::new(&path, &source, part).map_err(|error| error.to_string())?;
+        let path = Path::new("shader.frag");
+        let source = read(path, text).map_err(|error| error.to_string())?;
+        let program = ShaderProgram::new(path, &source, part).map_err(|error| error.to_string())?;
         let catalogue = catalogue();
         let member = catalogue.iter().find(|member| member.spec.id == id).expect(id);
         let found = bind(&program, &member.spec, &[]).map_err(|error| error.to_string())?;

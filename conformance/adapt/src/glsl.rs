@@ -4,6 +4,8 @@
 //! differently stands at the global level alone: declarations of uniforms, varyings, attributes and outputs. They become plain global
 //! variables, so that only expressions are left, which all versions share. Lines keep their numbers.
 
+mod fixed_function;
+
 /// What a variable was declared as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
@@ -15,6 +17,8 @@ pub(crate) enum Role {
     Varying,
     /// For the stage after.
     Output,
+    /// The same, at a location other than 0.
+    FurtherOutput,
     /// What is sampled: the value that it gives.
     Texture,
 }
@@ -38,7 +42,17 @@ const SAMPLE: &str = "lightmeter_texture";
 /// What combines a texture and a sampler.
 const COMBINE: &str = "lightmeter_combined";
 /// The output of versions that have no other.
-pub(crate) const COLOR: &str = "lightmeter_FragColor";
+const COLOR: &str = "lightmeter_FragColor";
+/// What follows a name that only naga reserves.
+const AS_NAME: &str = "_lightmeter_name";
+/// Words that naga reserves, and that some version of GLSL, or the place that they stand in, leaves to names.
+const RESERVED: [&str; 10] =
+    ["sample", "sampler", "buffer", "shared", "patch", "precise", "coherent", "restrict", "volatile", "subroutine"];
+
+/// The names that people wrote, in a message or as a name.
+pub(crate) fn shown(text: &str) -> String {
+    text.replace(COLOR, "gl_FragColor").replace(AS_NAME, "")
+}
 const HELPERS: &str = "vec4 lightmeter_texture(vec4 t, vec2 at) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at) { return t; } \
     vec4 lightmeter_texture(vec4 t, vec2 at, float bias) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at, float bias) { return t; } \
     float lightmeter_texture(float t, vec3 at) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } ";
@@ -149,6 +163,10 @@ pub(crate) fn normalised(text: &str) -> Normalised {
         out.text += &format!("vec4 {COLOR}; ");
         out.roles.push((COLOR.into(), Role::Output));
     }
+    if tokens.contains(&Token::Word("gl_FragData")) {
+        (1..8).for_each(|place| out.text += &format!("vec4 {}; ", further_color(place)));
+    }
+    fixed_function::declare(&tokens, &mut out);
     out.text += "\n";
     let mut place = 0;
     while place < tokens.len() {
@@ -196,13 +214,15 @@ fn statement(tokens: &[Token<'_>], from: usize) -> usize {
 fn declare(statement: &[Token<'_>], out: &mut Normalised) {
     let solid: Vec<usize> = (0..statement.len()).filter(|&k| !matches!(statement[k], Token::Space(_))).collect();
     let at = |k: usize| solid.get(k).map_or(Token::Mark(""), |&place| statement[place]);
-    let mut role = None;
+    let (mut role, mut is_further) = (None, false);
     let mut first = 0;
     // The qualifiers, a layout's brackets among them.
     loop {
         match at(first) {
             Token::Word("layout") => {
                 while !matches!(at(first), Token::Mark(")" | "")) {
+                    is_further |= at(first) == Token::Word("location")
+                        && !matches!((at(first + 1), at(first + 2)), (Token::Mark("="), Token::Mark("0")));
                     first += 1;
                 }
             }
@@ -214,6 +234,9 @@ fn declare(statement: &[Token<'_>], out: &mut Normalised) {
             _ => break,
         }
         first += 1;
+    }
+    if is_further && role == Some(Role::Output) {
+        role = Some(Role::FurtherOutput);
     }
     let start = solid.get(first).copied().unwrap_or(statement.len());
     match (at(first), role) {
@@ -247,10 +270,32 @@ fn blank(tokens: &[Token<'_>], text: &mut String) {
 
 /// Writes what is left as it is, but for the names of what is sampled.
 fn written(tokens: &[Token<'_>], text: &mut String) {
+    let mut skipped = 0;
     for (k, token) in tokens.iter().enumerate() {
-        let next = tokens[k + 1..].iter().find(|token| !matches!(token, Token::Space(_)));
+        if k < skipped {
+            continue;
+        }
+        let mut after =
+            (k + 1..tokens.len()).filter(|&place| !matches!(tokens[place], Token::Space(_))).map(|k| (k, &tokens[k]));
+        let next = after.next().map(|(_, token)| token);
         let is_called = next == Some(&Token::Mark("("));
         match *token {
+            // Those at a constant place are variables of their own.
+            Token::Word("gl_FragData") if next == Some(&Token::Mark("[")) => {
+                let (number, close) = (after.next(), after.next());
+                match (number.and_then(|(_, token)| token.text().parse().ok()), close) {
+                    (Some(0), Some((end, Token::Mark("]")))) => (text.push_str(COLOR), skipped = end + 1).1,
+                    (Some(place @ 1..8), Some((end, Token::Mark("]")))) => {
+                        text.push_str(&further_color(place));
+                        skipped = end + 1;
+                    }
+                    _ => text.push_str(COLOR),
+                }
+            }
+            Token::Word(word) if is_own_name(word, next) => {
+                text.push_str(word);
+                text.push_str(AS_NAME);
+            }
             Token::Space(space) if space.starts_with('#') => directed(space, text),
             Token::Space(space) if space.starts_with('/') => text.extend(space.chars().filter(|c| c.is_whitespace())),
             // What is constant and comes in is what comes in.
@@ -259,6 +304,16 @@ fn written(tokens: &[Token<'_>], text: &mut String) {
             other => text.push_str(other.text()),
         }
     }
+}
+
+/// The output that is `gl_FragData` at a place other than 0.
+fn further_color(place: usize) -> String {
+    format!("lightmeter_FragData{place}")
+}
+
+/// Whether a word is a name, though naga reserves it: a type and a qualifier stand before a word.
+fn is_own_name(word: &str, next: Option<&Token<'_>>) -> bool {
+    RESERVED.contains(&word) && !matches!(next, Some(Token::Word(_)))
 }
 
 fn renamed(word: &str, is_called: bool) -> &str {
@@ -319,7 +374,7 @@ fn variables(tokens: &[Token<'_>], role: Role, out: &mut Normalised) {
     let (mut depth, mut is_name, mut ty) = (0_usize, false, "");
     for token in tokens {
         match *token {
-            Token::Word(word) if depth == 0 && INTERPOLATION.contains(&word) => continue,
+            Token::Word(word) if depth == 0 && ty.is_empty() && INTERPOLATION.contains(&word) => continue,
             Token::Word(word) if depth == 0 && ty.is_empty() => {
                 ty = word;
                 is_name = true;
@@ -329,7 +384,8 @@ fn variables(tokens: &[Token<'_>], role: Role, out: &mut Normalised) {
             Token::Word(word) if depth == 0 && is_name => {
                 is_name = false;
                 let role = if is_texture(ty) { Role::Texture } else { role };
-                out.roles.push((word.into(), role));
+                let end = if is_own_name(word, None) { AS_NAME } else { "" };
+                out.roles.push((format!("{word}{end}"), role));
             }
             Token::Mark("(" | "[" | "{") => depth += 1,
             Token::Mark(")" | "]" | "}") => depth -= 1,
@@ -424,6 +480,36 @@ mod tests {
             own[1],
             "void main() { vec4 textureColor = lightmeter_texture(texture1, vec2(0)); float image2 = 1.0; }"
         );
+    }
+
+    #[test]
+    fn names_that_naga_reserves_are_names() {
+        let own = lines("uniform sampler2D sampler;\nvoid main() { vec4 sample = texture2D(sampler, vec2(0)); }");
+        assert_eq!(shown(&own[0]), "vec4 sampler;");
+        assert_eq!(shown(&own[1]), "void main() { vec4 sample = lightmeter_texture(sampler, vec2(0)); }");
+        assert!(own.iter().all(|line| line.contains(AS_NAME)), "{own:?}");
+        // Where they are types and qualifiers they stay so.
+        let own = lines("vec4 f(sampler s, precise float x) { return vec4(x); }");
+        assert_eq!(own[0], "vec4 f(float s, precise float x) { return vec4(x); }");
+    }
+
+    #[test]
+    fn the_fixed_functions_state_is_declared_where_it_is_used() {
+        let own = normalised("void main() { gl_Position = ftransform(); gl_FrontColor = gl_LightSource[1].diffuse; }");
+        let names: Vec<&str> = own.roles.iter().map(|(name, _)| &**name).collect();
+        assert_eq!(names, ["gl_ModelViewProjectionMatrix", "gl_LightSource", "gl_Vertex", "gl_FrontColor"]);
+        assert!(own.text.starts_with(HELPERS) && own.text.lines().count() == PRELUDE_LINES + 1, "{}", own.text);
+        let own = normalised("uniform float gl_Normal2;\nvoid main() {}");
+        assert_eq!(own.roles.len(), 1, "{:?}", own.roles);
+    }
+
+    #[test]
+    fn outputs_at_places_are_variables_of_their_own() {
+        let own = lines("void main() { gl_FragData[0] = vec4(1); gl_FragData[ 3 ] = vec4(0); }");
+        assert_eq!(own[0], "void main() { lightmeter_FragColor = vec4(1); lightmeter_FragData3 = vec4(0); }");
+        let own = normalised("layout(location = 1) out vec4 b; layout(location=0) out vec4 a; out vec4 c;");
+        let roles: Vec<Role> = own.roles.iter().map(|(_, role)| *role).collect();
+        assert_eq!(roles, [Role::FurtherOutput, Role::Output, Role::Output]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::AdaptError;
 use crate::ending::ends;
-use crate::glsl::Role;
+use crate::glsl::{Role, shown};
 use crate::name::safe;
 use crate::place::judged_text;
 use crate::source::ShaderSource;
@@ -96,6 +96,8 @@ pub struct ShaderOutput {
     pub(crate) value: String,
     /// Its type.
     pub leaf: Leaf,
+    /// Whether it is at a location other than 0, where a shader has several.
+    pub(crate) is_further: bool,
 }
 
 /// A shader as functions in WGSL.
@@ -346,7 +348,8 @@ fn member_name(k: usize) -> String {
 struct Described {
     /// Each global variable's name, and what it is; `None` of one of its own.
     globals: Vec<(String, Option<From>)>,
-    outputs: Vec<usize>,
+    /// The variables that it gives, and whether each is at a location other than 0.
+    outputs: Vec<(usize, bool)>,
     /// Each argument's name.
     arguments: Vec<(String, From)>,
     /// The names of structures' members, by the type's place.
@@ -363,8 +366,8 @@ impl Described {
                 (_, Some(Role::Uniform)) => Some(From::Uniform),
                 (_, Some(Role::Input | Role::Varying)) => Some(From::Input),
                 (_, Some(Role::Texture)) => Some(From::Texture),
-                (_, Some(Role::Output)) => {
-                    outputs.push(handle.index());
+                (_, Some(role @ (Role::Output | Role::FurtherOutput))) => {
+                    outputs.push((handle.index(), role == Role::FurtherOutput));
                     None
                 }
                 (AddressSpace::Handle, None) => match module.types[variable.ty].inner {
@@ -376,7 +379,7 @@ impl Described {
                 }
                 _ => None,
             };
-            globals.push((name, from));
+            globals.push((shown(&name), from));
         }
         let function = &module.functions[entry];
         let is_entry = function.name.as_deref() == Some("entry");
@@ -447,20 +450,19 @@ impl Described {
             words.push(place);
         }
         let mut outputs = vec![];
-        for (handle, variable) in
-            module.global_variables.iter().filter(|(handle, _)| self.outputs.contains(&handle.index()))
-        {
-            walk.outputs(
-                variable.ty,
-                &self.globals[handle.index()].0,
-                variable.name.as_deref().unwrap_or_default(),
-                &mut outputs,
-            );
+        // A function that gives a value is judged by it, whatever else the file declares.
+        let given = self.outputs.iter().filter(|_| function.result.is_none());
+        for &(place, is_further) in given {
+            let Some((_, variable)) = module.global_variables.iter().find(|(handle, _)| handle.index() == place) else {
+                continue;
+            };
+            let value = variable.name.as_deref().unwrap_or_default();
+            walk.outputs(variable.ty, (&self.globals[place].0, is_further), value, &mut outputs);
         }
         let call = match &function.result {
             None => format!("user_entry({});", words.join(", ")),
             Some(result) => {
-                walk.outputs(result.ty, "", "user_given", &mut outputs);
+                walk.outputs(result.ty, ("", false), "user_given", &mut outputs);
                 format!("let user_given = user_entry({});", words.join(", "))
             }
         };
@@ -559,16 +561,17 @@ impl Walk<'_> {
         }
     }
 
-    fn outputs(&self, ty: Handle<Type>, name: &str, value: &str, out: &mut Vec<ShaderOutput>) {
+    fn outputs(&self, ty: Handle<Type>, (name, is_further): (&str, bool), value: &str, out: &mut Vec<ShaderOutput>) {
         if let TypeInner::Struct { members, .. } = &self.module.types[ty].inner {
             for (k, member) in members.iter().enumerate() {
                 let (own, built_in) = &self.described.members[ty.index()][k];
+                let is_further = matches!(member.binding, Some(Binding::Location { location: 1.., .. }));
                 if built_in.is_none() {
-                    self.outputs(member.ty, own, &format!("{value}.{}", member_name(k)), out);
+                    self.outputs(member.ty, (own, is_further), &format!("{value}.{}", member_name(k)), out);
                 }
             }
         } else if let Some(leaf) = self.leaf(ty) {
-            out.push(ShaderOutput { name: name.into(), value: value.into(), leaf });
+            out.push(ShaderOutput { name: name.into(), value: value.into(), leaf, is_further });
         }
     }
 

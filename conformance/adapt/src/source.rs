@@ -68,8 +68,13 @@ impl ShaderSource {
             return of_spirv(path, &bytes);
         }
         let text = read::text(path, MOST_BYTES).map_err(unreadable)?;
-        // Some editors begin a file with a mark of its byte order.
-        let text = text.trim_start_matches('\u{feff}').to_owned();
+        Self::of_text(path, &text, language)
+    }
+
+    /// Reads a text, as the file of that name.
+    pub(crate) fn of_text(path: &Path, text: &str, language: Language) -> Result<Self, AdaptError> {
+        // Some editors begin a file with a mark of its byte order, and some end lines with CR alone.
+        let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
         if let Language::Glsl(stage) = language {
             return of_glsl(path, text, stage);
         }
@@ -130,11 +135,8 @@ fn of_wgsl(path: &Path, text: &str) -> Result<Module, AdaptError> {
 
 fn of_glsl(path: &Path, own: String, stage: ShaderStage) -> Result<ShaderSource, AdaptError> {
     // Messages have the names that people wrote.
-    let invalid = |line, message: String| AdaptError::Invalid {
-        path: path.into(),
-        line,
-        message: message.replace(glsl::COLOR, "gl_FragColor"),
-    };
+    let invalid =
+        |line, message: String| AdaptError::Invalid { path: path.into(), line, message: glsl::shown(&message) };
     if let Some((line, word)) = unread(&own) {
         return Err(invalid(Some(line), word));
     }

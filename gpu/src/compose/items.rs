@@ -78,7 +78,8 @@ fn identifiers(code: &str, names: &mut Vec<String>) {
     while let Some(c) = rest.chars().next() {
         if c.is_ascii_alphabetic() || c == '_' {
             let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
-            let is_declared = rest[end..].starts_with(':') && !code.contains("var<") && !code.contains(" var ");
+            let is_item = code.contains("var<") || code.contains(" var ") || code.starts_with("const ");
+            let is_declared = rest[end..].starts_with(':') && !is_item;
             if before != '.' && !is_declared {
                 names.push(rest[..end].to_owned());
             }
@@ -127,5 +128,8 @@ mod tests {
         assert_eq!(names, ["main", "b", "A", "f"]);
         assert_eq!(own.iter().map(|item| item.name.as_str()).collect::<Vec<_>>(), ["main", "b", "A", "c"]);
         assert_eq!(own[0].lines[0].text, "// The entry.");
+        // A constant with its type, as naga writes it.
+        let own = split(lines("own", "const one: f32 = 1f;\n\n@fragment\nfn main() {\n    let a = one;\n}\n"));
+        assert_eq!(reached(&own, &[]).iter().map(|item| item.name.as_str()).collect::<Vec<_>>(), ["one", "main"]);
     }
 }

@@ -59,7 +59,7 @@ pub(super) fn computed<R: Arithmetic>(form: Form, taken: &mut Taken<'_, R>) -> O
         F::DirectionAsPosition | F::PositionAsDirection | F::DividedAlways | F::DividedIfPositive | F::NotDivided => {
             placed(form, taken)
         }
-        F::MixFromTheEnd | F::OverFromTheProduct | F::Middle => between(form, taken),
+        F::MixFromTheEnd | F::OverFromTheProduct | F::AlongByShare | F::Middle => between(form, taken),
         F::EdgeFromItsEnd | F::EdgeFromThePoint | F::NormalByVertices => sides(form, taken),
         F::WeightsBySum | F::WeightsByDifference => weights(form, taken),
         F::DepthRange | F::UpsideDown => window(form, taken),
@@ -342,6 +342,20 @@ fn between<R: Real>(form: Form, taken: &mut Taken<'_, R>) -> Option<()> {
         Form::OverFromTheProduct => {
             let (src, alpha, dst) = over(taken)?;
             give(taken, src.zip(dst, |s, d| s * alpha + (d - d * alpha)).0)
+        }
+        Form::AlongByShare => {
+            let names = if taken.place("ia").is_some() {
+                ["ia", "ib", "xa", "xb", "x"]
+            } else {
+                ["near", "far", "top", "bottom", "y"]
+            };
+            let mut given = [one; 5];
+            for (place, name) in given.iter_mut().zip(names) {
+                *place = scalar(taken, name)?;
+            }
+            let [from, to, start, end, at] = given;
+            let share = (at - start) / (end - start);
+            give(taken, [from + (to - from) * share])
         }
         _ => {
             let corners = [vector(taken, "a")?, vector(taken, "b")?, vector(taken, "c")?];

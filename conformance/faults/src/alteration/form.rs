@@ -123,6 +123,8 @@ pub(in super::super) enum Form {
     MixFromTheEnd,
     /// src·As + (dst − dst·As).
     OverFromTheProduct,
+    /// u + (w − u)·t, with the share t of the edge or of the span.
+    AlongByShare,
     /// (p − b) × (a − b) for (b − a) × (p − a).
     EdgeFromItsEnd,
     /// (a − p) × (b − p) for (b − a) × (p − a).
@@ -232,6 +234,7 @@ impl Form {
             Self::DividedAlways | Self::DividedIfPositive | Self::NotDivided => &[&["eye"], &["clip"]],
             Self::MixFromTheEnd => &[&["a", "b", "t"], &["src", "dst"]],
             Self::OverFromTheProduct => &[&["src", "dst"]],
+            Self::AlongByShare => &[&["near", "far", "top", "bottom", "y"], &["ia", "ib", "xa", "xb", "x"]],
             Self::EdgeFromItsEnd | Self::EdgeFromThePoint => &[&["a", "b", "p"], &["a", "b", "c"]],
             Self::WeightsBySum | Self::WeightsByDifference => &[&["a", "b", "c", "p"]],
             Self::DepthRange | Self::UpsideDown => &[&["ndc", "origin", "size", "depth"]],

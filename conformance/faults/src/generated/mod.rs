@@ -71,6 +71,7 @@ fn of_result(Called { slug, says }: Called, out: usize) -> Vec<InStep> {
         made.push((format!("{slug}-inverted"), own("reciprocal"), Do::Result(Op::Reciprocal)));
         made.push((format!("{slug}-squared"), format!("{says} is squared"), Do::Result(Op::Square)));
         made.push((format!("{slug}-rooted"), own("square root"), Do::Result(Op::Root)));
+        made.push((format!("{slug}-zero"), format!("{says} is 0 throughout"), Do::Result(Op::Set(0.0))));
     }
     made
 }

@@ -28,6 +28,13 @@ pub(super) const FAULTS: &[Fault] = &[
     .rounding()
     .seen_in("shaders that write fma(src, a, dst − dst·a)"),
     fault(
+        "rearranged-scanline",
+        "the formula is rearranged, u + (w − u)·t along the edges and the span, with the share t of each: equal for real numbers, and rounded elsewhere",
+        &[&[form("along an edge", Form::AlongByShare), form("along the span", Form::AlongByShare)]],
+    )
+    .rounding()
+    .seen_in("scan converters written with mix"),
+    fault(
         "rearranged-edge",
         "the formula is rearranged, with the sides taken from the next vertex: equal for real numbers, and rounded elsewhere",
         &[
