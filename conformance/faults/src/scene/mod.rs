@@ -8,7 +8,7 @@ pub mod noise;
 pub mod selftest;
 mod table;
 
-pub use diagnose::{Part, SceneDiagnosis, SceneExplanation, Trial};
+pub use diagnose::{PixelPart, SceneDiagnosis, SceneExplanation, Trial};
 use lightmeter_judge::image::LegalPixel;
 use lightmeter_judge::image::file::StoredImage;
 use lightmeter_judge::image::judge;
@@ -160,8 +160,8 @@ mod tests {
         let found = Trial::new(&frame, &image, &expect(&frame, None, None, &WGSL), &WGSL).diagnose();
         assert!(found.explanations.is_empty() && found.parts.len() == 2, "{}", found.diagnosis);
         let named = |part: usize| found.parts[part].1.first().map(|best| best.faults[0].name);
-        assert_eq!((found.parts[0].0, named(0)), (Part::Color, Some("diffuse-left-out")), "{}", found.diagnosis);
-        assert_eq!((found.parts[1].0, named(1)), (Part::Alpha, None), "{}", found.diagnosis);
+        assert_eq!((found.parts[0].0, named(0)), (PixelPart::Color, Some("diffuse-left-out")), "{}", found.diagnosis);
+        assert_eq!((found.parts[1].0, named(1)), (PixelPart::Alpha, None), "{}", found.diagnosis);
         let told = found.diagnosis.to_string();
         assert!(told.contains("wrong values of color are explained by: the diffuse term is left out"), "{told}");
     }

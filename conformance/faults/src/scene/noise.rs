@@ -1,7 +1,7 @@
 //! Noise in the place of scenes: images that come of no mistake. None of them may be explained, unless a renderer that makes the mistake
 //! draws it.
 
-use super::{Part, SceneExplanation, Trial};
+use super::{PixelPart, SceneExplanation, Trial};
 use crate::noise::{LEAST_GIVEN, random};
 use crate::selftest::SelftestOptions;
 use lightmeter_catalogue::scene::SceneError;
@@ -80,9 +80,9 @@ pub fn noise(size: u32, options: &SelftestOptions, progress: &mut impl FnMut(&st
             let image = StoredImage::of(&drawn(right, noise, keeps_alpha), frame.target.format);
             let trial = Trial::new(&frame, &image, &expected, profile);
             let found = trial.diagnose();
-            let whole = found.explanations.first().map(|best| (Part::Whole, best));
+            let whole = found.explanations.first().map(|best| (PixelPart::Whole, best));
             let parts = found.parts.iter().filter_map(|(part, all)| Some((*part, all.first()?)));
-            let one = |(part, best): (Part, &SceneExplanation)| {
+            let one = |(part, best): (PixelPart, &SceneExplanation)| {
                 let given = trial.given(best, part);
                 ExplainedNoise {
                     formula: ids[place].clone(),

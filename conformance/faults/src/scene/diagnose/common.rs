@@ -1,6 +1,6 @@
 //! What failing components have in common where nothing explains them.
 
-use super::{NAMES, Part, Trial, real};
+use super::{NAMES, PixelPart, Trial, real};
 
 /// What failing components have in common is told where so large a part of them has it.
 const COMMON: f64 = 0.95;
@@ -18,9 +18,9 @@ impl Trial<'_> {
     pub(super) fn in_common(&self) -> Vec<String> {
         if let Some([r, g, b, a]) = self.flat() {
             return vec![match self.part {
-                Part::Whole => format!("the whole image is {r} {g} {b} {a}"),
-                Part::Color => format!("the whole image is {r} {g} {b}"),
-                Part::Alpha => format!("alpha is {a} in the whole image"),
+                PixelPart::Whole => format!("the whole image is {r} {g} {b} {a}"),
+                PixelPart::Color => format!("the whole image is {r} {g} {b}"),
+                PixelPart::Alpha => format!("alpha is {a} in the whole image"),
             }];
         }
         [self.component(), self.sign(), self.region()].into_iter().flatten().collect()
@@ -28,7 +28,7 @@ impl Trial<'_> {
 
     /// The one component that nearly all failing ones are of.
     fn component(&self) -> Option<String> {
-        let components = if self.part == Part::Alpha { 0..0 } else { 0..4 };
+        let components = if self.part == PixelPart::Alpha { 0..0 } else { 0..4 };
         components.into_iter().find_map(|k| {
             let how_many = self.share(|number| number % 4 == k)?;
             Some(format!("{how_many} are {}", NAMES[k]))

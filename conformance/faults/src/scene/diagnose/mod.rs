@@ -66,14 +66,14 @@ pub struct SceneDiagnosis {
     /// The best first.
     pub explanations: Vec<SceneExplanation>,
     /// Where nothing explains whole pixels: what explains colour and alpha, each by itself.
-    pub parts: Vec<(Part, Vec<SceneExplanation>)>,
+    pub parts: Vec<(PixelPart, Vec<SceneExplanation>)>,
     /// What a report says of it.
     pub diagnosis: Diagnosis,
 }
 
 /// Components of pixels that are diagnosed together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum PixelPart {
     /// All four.
     Whole,
     /// Red, green and blue.
@@ -82,7 +82,7 @@ pub enum Part {
     Alpha,
 }
 
-impl Part {
+impl PixelPart {
     const fn components(self) -> Range<usize> {
         match self {
             Self::Whole => 0..4,
@@ -107,7 +107,7 @@ pub struct Trial<'a> {
     expected: &'a [LegalPixel],
     profile: &'a Profile,
     /// The components that it is of: others count neither as failing nor as passing.
-    part: Part,
+    part: PixelPart,
     /// Components that fail, and those that pass and are not of marked pixels.
     failing: Vec<usize>,
     passing: usize,
@@ -146,11 +146,11 @@ impl<'a> Trial<'a> {
     /// An image with what is legal of it.
     #[must_use]
     pub fn new(frame: &'a Frame, image: &'a StoredImage, expected: &'a [LegalPixel], profile: &'a Profile) -> Self {
-        Self::of(Part::Whole, frame, image, expected, profile)
+        Self::of(PixelPart::Whole, frame, image, expected, profile)
     }
 
     fn of(
-        part: Part,
+        part: PixelPart,
         frame: &'a Frame,
         image: &'a StoredImage,
         expected: &'a [LegalPixel],
@@ -192,7 +192,7 @@ impl<'a> Trial<'a> {
     pub fn diagnose(&self) -> SceneDiagnosis {
         let mut found = self.diagnosed();
         if found.failing > 0 && found.explanations.is_empty() {
-            let parts: Vec<(Part, SceneDiagnosis)> = [Part::Color, Part::Alpha]
+            let parts: Vec<(PixelPart, SceneDiagnosis)> = [PixelPart::Color, PixelPart::Alpha]
                 .map(|part| (part, Self::of(part, self.frame, self.image, self.expected, self.profile).diagnosed()))
                 .into_iter()
                 .filter(|(_, found)| found.failing > 0)
@@ -420,7 +420,7 @@ impl<'a> Trial<'a> {
 
 impl Trial<'_> {
     /// The part of the failing components that a renderer which makes these mistakes gives itself.
-    pub(super) fn given(&self, one: &SceneExplanation, part: Part) -> f64 {
+    pub(super) fn given(&self, one: &SceneExplanation, part: PixelPart) -> f64 {
         let made = Made { faults: one.faults.clone(), scaled: one.scaled };
         let drawn = draw::<f32>(&made.base(self.frame), &made.faults);
         let failing: Vec<usize> =
