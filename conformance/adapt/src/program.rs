@@ -449,10 +449,14 @@ impl Described {
             )?;
             words.push(place);
         }
+        // A function that gives a value is judged by it, whatever else the file declares. What an entry point returns may be the pipeline's
+        // alone.
         let mut outputs = vec![];
-        // A function that gives a value is judged by it, whatever else the file declares.
-        let given = self.outputs.iter().filter(|_| function.result.is_none());
-        for &(place, is_further) in given {
+        if let Some(result) = &function.result {
+            walk.outputs(result.ty, ("", false), "user_given", &mut outputs);
+        }
+        let given = self.outputs.iter().filter(|_| outputs.is_empty()).copied().collect::<Vec<_>>();
+        for (place, is_further) in given {
             let Some((_, variable)) = module.global_variables.iter().find(|(handle, _)| handle.index() == place) else {
                 continue;
             };
@@ -461,10 +465,7 @@ impl Described {
         }
         let call = match &function.result {
             None => format!("user_entry({});", words.join(", ")),
-            Some(result) => {
-                walk.outputs(result.ty, ("", false), "user_given", &mut outputs);
-                format!("let user_given = user_entry({});", words.join(", "))
-            }
+            Some(_) => format!("let user_given = user_entry({});", words.join(", ")),
         };
         Ok(ShaderProgram { wgsl, declared, call, unanswered, slots, outputs, text: String::new() })
     }
