@@ -496,7 +496,7 @@ fn a_shader_that_discards_or_has_no_end_fails() {
 }
 
 /// Shaders as people write them, each right: what they are given and give is declared in ways that naga does not read.
-const DIALECTS: [(&str, &str); 7] = [
+const DIALECTS: [(&str, &str); 8] = [
     (
         "old-mac.frag",
         "#version 330\rin vec3 p; // the place\runiform vec3 fog, shaded;\runiform float density;\rout vec4 o;\r\
@@ -518,6 +518,13 @@ const DIALECTS: [(&str, &str); 7] = [
         "#version 330\nlayout(location = 1) out vec4 bright;\nlayout(location = 0) out vec4 shown;\nin vec3 p;\n\
          uniform vec3 fog, shaded;\nuniform float density;\n\
          void main() { shown = vec4(mix(fog, shaded, exp(-density * abs(p.z))), 1.0); bright = max(shown - 1.0, 0.0); }",
+    ),
+    (
+        "bright.wgsl",
+        "struct Given { @location(1) bright: vec4f, @location(0) shown: vec4f }\n\
+         struct Scene { fog: vec3f, shaded: vec3f, density: f32 }\n@group(0) @binding(0) var<uniform> scene: Scene;\n\
+         @fragment fn main(@location(0) p: vec3f) -> Given {\n    let c = mix(scene.fog, scene.shaded, exp(-scene.density * abs(p.z)));\n    \
+         return Given(vec4f(max(c - 1.0, vec3f()), 1.0), vec4f(c, 1.0));\n}",
     ),
     (
         "fixed-function.frag",

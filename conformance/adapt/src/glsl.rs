@@ -283,10 +283,10 @@ fn written(tokens: &[Token<'_>], text: &mut String) {
             // Those at a constant place are variables of their own.
             Token::Word("gl_FragData") if next == Some(&Token::Mark("[")) => {
                 let (number, close) = (after.next(), after.next());
-                match (number.and_then(|(_, token)| token.text().parse().ok()), close) {
-                    (Some(0), Some((end, Token::Mark("]")))) => (text.push_str(COLOR), skipped = end + 1).1,
-                    (Some(place @ 1..8), Some((end, Token::Mark("]")))) => {
-                        text.push_str(&further_color(place));
+                let place = number.and_then(|(_, token)| token.text().parse().ok());
+                match (place, close) {
+                    (Some(place @ 0..8), Some((end, Token::Mark("]")))) => {
+                        text.push_str(&if place == 0 { COLOR.to_owned() } else { further_color(place) });
                         skipped = end + 1;
                     }
                     _ => text.push_str(COLOR),

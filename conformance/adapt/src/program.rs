@@ -5,7 +5,7 @@ use crate::ending::ends;
 use crate::glsl::{Role, shown};
 use crate::name::safe;
 use crate::place::judged_text;
-use crate::source::ShaderSource;
+use crate::source::{Language, ShaderSource};
 use crate::unanswered::{Unanswered, unanswered};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{
@@ -350,10 +350,20 @@ struct Described {
     globals: Vec<(String, Option<From>)>,
     /// The variables that it gives, and whether each is at a location other than 0.
     outputs: Vec<(usize, bool)>,
+    /// Whether it is a vertex shader's entry point.
+    is_vertex: bool,
     /// Each argument's name.
     arguments: Vec<(String, From)>,
-    /// The names of structures' members, by the type's place.
-    members: Vec<Vec<(String, Option<BuiltIn>)>>,
+    /// The members of structures, by the type's place.
+    members: Vec<Vec<Member>>,
+}
+
+/// A member of a structure.
+struct Member {
+    name: String,
+    built_in: Option<BuiltIn>,
+    /// Whether it is at a location other than 0.
+    is_further: bool,
 }
 
 impl Described {
@@ -392,22 +402,22 @@ impl Described {
             let name = argument.name.clone().filter(|name| !name.is_empty());
             (name.or_else(|| stored_name(module, function, k)).unwrap_or_default(), from(&argument.binding))
         };
+        let member = |member: &naga::StructMember| Member {
+            name: member.name.clone().unwrap_or_default(),
+            built_in: match member.binding {
+                Some(Binding::BuiltIn(built_in)) => Some(built_in),
+                _ => None,
+            },
+            is_further: matches!(member.binding, Some(Binding::Location { location: 1.., .. })),
+        };
         let members = module.types.iter().map(|(_, ty)| match &ty.inner {
-            TypeInner::Struct { members, .. } => {
-                let built_in = |binding: &Option<Binding>| match binding {
-                    Some(Binding::BuiltIn(built_in)) => Some(*built_in),
-                    _ => None,
-                };
-                members
-                    .iter()
-                    .map(|member| (member.name.clone().unwrap_or_default(), built_in(&member.binding)))
-                    .collect()
-            }
+            TypeInner::Struct { members, .. } => members.iter().map(member).collect(),
             _ => vec![],
         });
         Self {
             globals,
             outputs,
+            is_vertex: source.language == Language::Glsl(ShaderStage::Vertex) || gives_position(module, function),
             arguments: function.arguments.iter().enumerate().map(argument).collect(),
             members: members.collect(),
         }
@@ -455,13 +465,17 @@ impl Described {
         if let Some(result) = &function.result {
             walk.outputs(result.ty, ("", false), "user_given", &mut outputs);
         }
-        let given = self.outputs.iter().filter(|_| outputs.is_empty()).copied().collect::<Vec<_>>();
-        for (place, is_further) in given {
+        let variables = if outputs.is_empty() { self.outputs.as_slice() } else { &[] };
+        for &(place, is_further) in variables {
             let Some((_, variable)) = module.global_variables.iter().find(|(handle, _)| handle.index() == place) else {
                 continue;
             };
             let value = variable.name.as_deref().unwrap_or_default();
             walk.outputs(variable.ty, (&self.globals[place].0, is_further), value, &mut outputs);
+        }
+        // What is handed to the next stage has no first place: only a fragment's colours have.
+        if self.is_vertex {
+            outputs.iter_mut().for_each(|output| output.is_further = false);
         }
         let call = match &function.result {
             None => format!("user_entry({});", words.join(", ")),
@@ -469,6 +483,15 @@ impl Described {
         };
         Ok(ShaderProgram { wgsl, declared, call, unanswered, slots, outputs, text: String::new() })
     }
+}
+
+/// Whether a function gives a vertex's position to the pipeline.
+fn gives_position(module: &Module, function: &Function) -> bool {
+    let is_position = |binding: &Option<Binding>| matches!(binding, Some(Binding::BuiltIn(BuiltIn::Position { .. })));
+    function.result.as_ref().is_some_and(|result| match &module.types[result.ty].inner {
+        TypeInner::Struct { members, .. } => members.iter().any(|member| is_position(&member.binding)),
+        _ => is_position(&result.binding),
+    })
 }
 
 /// The name of the variable that an argument without one is stored in: of SPIR-V, whose inputs are variables.
@@ -501,7 +524,7 @@ impl Walk<'_> {
         match &self.module.types[ty].inner {
             TypeInner::Struct { members, .. } => {
                 for (k, member) in members.iter().enumerate() {
-                    let (own, built_in) = &self.described.members[ty.index()][k];
+                    let Member { name: own, built_in, .. } = &self.described.members[ty.index()][k];
                     let from = built_in.map_or(from, From::BuiltIn);
                     let name = if name.is_empty() { own.clone() } else { format!("{name}.{own}") };
                     self.slots(member.ty, (name, format!("{place}.{}", member_name(k))), (from, is_further), out)?;
@@ -565,10 +588,9 @@ impl Walk<'_> {
     fn outputs(&self, ty: Handle<Type>, (name, is_further): (&str, bool), value: &str, out: &mut Vec<ShaderOutput>) {
         if let TypeInner::Struct { members, .. } = &self.module.types[ty].inner {
             for (k, member) in members.iter().enumerate() {
-                let (own, built_in) = &self.described.members[ty.index()][k];
-                let is_further = matches!(member.binding, Some(Binding::Location { location: 1.., .. }));
+                let Member { name: own, built_in, is_further } = &self.described.members[ty.index()][k];
                 if built_in.is_none() {
-                    self.outputs(member.ty, (own, is_further), &format!("{value}.{}", member_name(k)), out);
+                    self.outputs(member.ty, (own, *is_further), &format!("{value}.{}", member_name(k)), out);
                 }
             }
         } else if let Some(leaf) = self.leaf(ty) {
