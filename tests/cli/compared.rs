@@ -85,6 +85,22 @@ fn what_is_no_result_of_a_run_is_no_baseline() {
         let (status, _, said) = run(&["fog/linear"], &["--baseline", path]);
         assert!(status == 2 && said.contains(expected), "{text}: {said}");
     }
+    // Whatever reads results says what a file of another version is.
+    for (schema, expected) in [
+        ("report/3", "of a later version"),
+        ("run/1", "of an earlier version"),
+        ("sweep/9", "of a later version"),
+        ("bench/9", "of a later version"),
+        ("selftest/9", "of a later version"),
+    ] {
+        std::fs::write(&baseline, format!("{{\"schema\": \"lightmeter.{schema}\"}}")).expect("it can be written");
+        let is_of_shards = !(schema.starts_with("bench") || schema.starts_with("selftest"));
+        let commands = [&["page", "report", path][..], &["merge", path, path]];
+        for command in commands.into_iter().take(1 + usize::from(is_of_shards)) {
+            let output = lightmeter(command);
+            assert!(code(&output) == 2 && stderr(&output).contains(expected), "{command:?}: {}", stderr(&output));
+        }
+    }
 }
 
 #[test]

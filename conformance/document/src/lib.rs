@@ -129,6 +129,12 @@ fn schema<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()
 }
 
+/// Whether a schema is a document's, of whatever version: [`Document::read`] says of another one what would do.
+#[must_use]
+pub fn is_of<T: Document>(schema: &str) -> bool {
+    schema == T::SCHEMA || EARLIER.contains(&(schema, T::SCHEMA)) || is_later(schema, T::SCHEMA)
+}
+
 /// Whether a schema is another's of a later version.
 fn is_later(found: &str, known: &str) -> bool {
     let parts = |schema: &str| -> Option<(String, u32)> {

@@ -8,9 +8,9 @@ use super::{Status, command};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use lightmeter::arithmetic::Profile;
-use lightmeter::document::Document as _;
-use lightmeter::document::report::{self, Report};
+use lightmeter::document::report::Report;
 use lightmeter::document::sweep::{ExactFloat, SweepDocument};
+use lightmeter::document::{Document as _, is_of};
 use lightmeter::faults::{Mistakes, explain};
 use lightmeter::files::{read, shown};
 use lightmeter::merge::merge;
@@ -53,15 +53,16 @@ impl Merge {
     /// Joins the shards of a run or of a gate; `None` where the first file is one of a sweep.
     fn of_runs(&self) -> anyhow::Result<Option<Status>> {
         let Some(first) = self.results.first() else { return Ok(None) };
-        match schema(first)?.as_str() {
-            lightmeter::document::sweep::SCHEMA => return Ok(None),
-            // What is of an earlier version says so itself.
-            report::SCHEMA | "lightmeter.run/1" | "lightmeter.gate/1" => {}
-            other => bail!(
+        let schema = schema(first)?;
+        if is_of::<SweepDocument>(&schema) {
+            return Ok(None);
+        }
+        if !is_of::<Report>(&schema) {
+            bail!(
                 "{}: {}; expected the JSON that `run`, `gate` or `sweep` writes with --shard I/N and --format json",
                 first.display(),
-                if other.is_empty() { "it is no result".to_owned() } else { format!("its schema is `{other}`") }
-            ),
+                if schema.is_empty() { "it is no result".to_owned() } else { format!("its schema is `{schema}`") }
+            );
         }
         let mut parts = vec![];
         for path in &self.results {

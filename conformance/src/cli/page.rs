@@ -4,11 +4,11 @@ use super::contact_sheet;
 use super::{Status, emit, say};
 use anyhow::{Context as _, anyhow, bail};
 use clap::{Args, ValueEnum};
-use lightmeter::document::Document as _;
-use lightmeter::document::bench::{self, BenchDocument};
-use lightmeter::document::report::{ImageUse, Report, SCHEMA};
-use lightmeter::document::selftest as caught;
-use lightmeter::document::sweep::{self, SweepDocument};
+use lightmeter::document::bench::BenchDocument;
+use lightmeter::document::report::{ImageUse, Report};
+use lightmeter::document::selftest::SelftestDocument;
+use lightmeter::document::sweep::SweepDocument;
+use lightmeter::document::{Document as _, is_of};
 use lightmeter::files::read;
 use lightmeter::report;
 use lightmeter::report::bench::{page, plot};
@@ -246,16 +246,19 @@ pub(crate) fn swept(document: SweepDocument) -> Swept {
 /// The page of any result, by what its JSON says that it is. The pictures that it names lie where it says, or so from the folder of its file.
 fn report_of(json: &str, folder: &Path) -> anyhow::Result<String> {
     let document: serde_json::Value = serde_json::from_str(json).context("it is not JSON")?;
-    match document["schema"].as_str().unwrap_or("none") {
-        SCHEMA | "lightmeter.run/1" | "lightmeter.gate/1" => {
-            let mut report = Report::read(json)?;
-            found(report.groups.iter_mut().filter_map(|group| group.image.as_mut()), folder);
-            Ok(html::of_report(&report))
-        }
-        bench::SCHEMA => html::of_bench(&BenchDocument::read(json)?).map_err(anyhow::Error::from_boxed),
-        sweep::SCHEMA => Ok(html::of_sweeps(&[swept(file::parse(json).map_err(anyhow::Error::msg)?)])?),
-        caught::SCHEMA => Ok(html::of_selftest(&selftest::SelftestRun::read(json).map_err(anyhow::Error::msg)?)?),
-        other => bail!("its schema is `{other}`; expected the JSON of a run, a gate, a bench, a sweep or a self-test"),
+    let schema = document["schema"].as_str().unwrap_or("none");
+    if is_of::<Report>(schema) {
+        let mut report = Report::read(json)?;
+        found(report.groups.iter_mut().filter_map(|group| group.image.as_mut()), folder);
+        Ok(html::of_report(&report))
+    } else if is_of::<BenchDocument>(schema) {
+        html::of_bench(&BenchDocument::read(json)?).map_err(anyhow::Error::from_boxed)
+    } else if is_of::<SweepDocument>(schema) {
+        Ok(html::of_sweeps(&[swept(file::parse(json).map_err(anyhow::Error::msg)?)])?)
+    } else if is_of::<SelftestDocument>(schema) {
+        Ok(html::of_selftest(&selftest::SelftestRun::read(json).map_err(anyhow::Error::msg)?)?)
+    } else {
+        bail!("its schema is `{schema}`; expected the JSON of a run, a gate, a bench, a sweep or a self-test")
     }
 }
 

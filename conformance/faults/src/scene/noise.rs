@@ -46,8 +46,8 @@ impl fmt::Display for Noise<'_> {
 /// Scenes that stand in another's place.
 const OTHERS: usize = 6;
 
-/// Draws every kind of noise, with and without the right alpha, in the place of every built-in scene that a filter selects, `size` pixels on
-/// its longer side, and lists what is explained all the same. Once it is told to stop, it tries no other scene.
+/// Draws every kind of noise, with and without the right alpha, in the place of each built-in scene that a filter selects, `size` pixels on its
+/// longer side. Gives what was explained although it should not be. When it is told to stop, it begins no further scene.
 ///
 /// # Errors
 /// Where a scene is refused, which a test rules out.

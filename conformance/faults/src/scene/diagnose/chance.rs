@@ -4,8 +4,8 @@ use super::{Trial, slack, stored};
 use crate::evidence::{Foretold, MOST_FORETOLD, WIDE};
 use std::collections::HashSet;
 
-/// The most bits that a component can contribute: the first number in general, more than which no store in 8 bits has; the second where its
-/// value is the darkest or the brightest that can be stored, since such a value only tells the direction of the error.
+/// The most bits that a component can contribute: where its value lies between the ends of what can be stored (a store in 8 bits never has
+/// more than 8), and where it is the darkest or the brightest value, which only tells the direction of the error.
 const BITS: [f64; 2] = [16.0, 1.0];
 
 impl Trial<'_> {
