@@ -4,6 +4,7 @@
 
 mod bench;
 mod blend;
+mod check;
 mod compared;
 mod documents;
 mod gate;

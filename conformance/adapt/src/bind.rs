@@ -509,16 +509,16 @@ fn unused(spec: &Spec, bound: &[Bound], outputs: &[(&'static str, Option<String>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::{Language, ShaderSource};
     use crate::suggest::as_glsl;
     use crate::{Part, replaced};
     use lightmeter_catalogue::cases::Kind;
     use lightmeter_catalogue::select::catalogue;
     use lightmeter_gpu::Shaders;
+    use lightmeter_shaders::read::{Language, ShaderSource};
     use std::path::{Path, PathBuf};
 
     fn read(path: &Path, text: &str) -> Result<ShaderSource, AdaptError> {
-        ShaderSource::of_text(path, text, Language::of(path)?)
+        Ok(ShaderSource::of_text(path, text, Language::of(path)?)?)
     }
 
     /// Each formula of lighting, fog and attenuation is bound by the names that our own functions have, in WGSL and as naga writes it in GLSL.

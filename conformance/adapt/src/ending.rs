@@ -1,7 +1,7 @@
 //! What gives no value: loops without a way out, and shaders that never write what they give.
 
-use crate::glsl::Role;
-use crate::source::ShaderSource;
+use lightmeter_shaders::read::Role;
+use lightmeter_shaders::read::ShaderSource;
 use naga::{Block, Expression, Function, GlobalVariable, Handle, Module, Span, Statement};
 
 /// Refuses loops without a way out, and a shader that never writes what it gives: with the line of the loop where there is a text.

@@ -1,27 +1,15 @@
 //! What can be wrong with a shader, or with how it is bound.
 
+use lightmeter_shaders::read::ShaderError;
 use std::path::PathBuf;
 
 /// Why a shader cannot be made a formula's function.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdaptError {
-    /// It cannot be read as a file.
-    #[error("cannot read {}: {message}", .path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        message: String,
-    },
-    /// Its language is not one that is read.
-    #[error("{}: {message}", .path.display())]
-    Language {
-        /// The file.
-        path: PathBuf,
-        /// What would do.
-        message: String,
-    },
+    /// It is not read.
+    #[error(transparent)]
+    Read(#[from] ShaderError),
     /// It is not valid in its language, or uses what is not read.
     #[error("{}{}: {message}", .path.display(), .line.map(|line| format!(":{line}")).unwrap_or_default())]
     Invalid {

@@ -1,6 +1,6 @@
 //! Where in a shader's text a step of a formula is likely to stand.
 
-use crate::source::ShaderSource;
+use lightmeter_shaders::read::ShaderSource;
 use naga::{Block, Function, Handle, Module, Span, Statement};
 
 /// What a line that computes a step has: any of these, each of whose words it has all of, and none of those behind a `!`.

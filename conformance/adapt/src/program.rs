@@ -2,11 +2,11 @@
 
 use crate::AdaptError;
 use crate::ending::ends;
-use crate::glsl::{Role, shown};
 use crate::name::safe;
 use crate::place::judged_text;
-use crate::source::{Language, ShaderSource};
 use crate::unanswered::{Unanswered, unanswered};
+use lightmeter_shaders::read::{Language, ShaderSource};
+use lightmeter_shaders::read::{Role, shown};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{
     AddressSpace, ArraySize, Binding, BuiltIn, Expression, Function, Handle, Module, Scalar, ScalarKind, ShaderStage,

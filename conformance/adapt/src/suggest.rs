@@ -1,9 +1,9 @@
 //! The stable form of a formula, in the language of whoever asks.
 
 use crate::program::validated;
-use crate::source::Language;
 use crate::wrapper::Signature;
 use lightmeter_gpu::Shaders;
+use lightmeter_shaders::read::Language;
 use naga::ShaderStage;
 use naga::back::glsl::{Options, PipelineOptions, Version, Writer};
 use naga::compact::{KeepUnused, compact};

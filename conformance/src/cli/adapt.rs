@@ -9,9 +9,9 @@ use lightmeter::document::report::FoundBy;
 use lightmeter::document::report::JudgedAs;
 use lightmeter::select::catalogue;
 use lightmeter_adapt::bind::{Bound, ShaderBinding, bind};
-use lightmeter_adapt::source::ShaderSource;
 use lightmeter_adapt::{AdaptError, MOST_TURNS, Part, ShaderProgram, replaced};
 use lightmeter_gpu::Shaders;
+use lightmeter_shaders::read::ShaderSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

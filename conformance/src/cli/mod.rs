@@ -4,6 +4,7 @@ mod adapt;
 mod adapters;
 mod bench;
 mod book;
+mod check;
 mod clock;
 mod comparison;
 pub(crate) mod config;
@@ -88,7 +89,7 @@ fn exit_help() -> String {
 
 /// The commands by what they are for.
 const PURPOSES: &[(&str, &[&str])] = &[
-    ("Judge", &["run", "serve", "identify", "gate", "pack", "sweep", "special"]),
+    ("Judge", &["check", "run", "serve", "identify", "gate", "pack", "sweep", "special"]),
     ("Look up", &["list", "show", "mistakes", "effects", "eval", "render"]),
     ("Measure", &["bench", "adapters", "selftest"]),
     ("Results", &["merge", "page", "book", "schema", "completions", "man", "help"]),
@@ -119,6 +120,8 @@ impl Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Find the steps of shaders, and what is wrong with them
+    Check(check::Check),
     /// Judge an adapter, or shaders of your own on it
     Run(run::Run),
     /// Judge the GPU of a browser
@@ -170,12 +173,16 @@ enum Command {
     TryShaders(foreign::Try),
     #[command(hide = true)]
     AdaptShader(adapt::Adapt),
+    #[command(hide = true)]
+    ReviewShaders(check::Worker),
 }
 
 impl Cli {
     pub(crate) fn run(self) -> anyhow::Result<Status> {
         terminal::settle(self.shown);
         match self.command {
+            Command::Check(check) => check.run(),
+            Command::ReviewShaders(worker) => worker.run(),
             Command::Run(run) => run.run(),
             Command::Serve(serve) => serve.run(),
             Command::List(list) => list.run(),

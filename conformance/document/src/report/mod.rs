@@ -6,6 +6,7 @@ mod failure;
 mod group;
 mod image;
 mod problem;
+mod review;
 mod sample;
 mod shader;
 mod stability;
@@ -19,6 +20,7 @@ pub use failure::Failure;
 pub use group::{Group, Totals, WorstAnswer};
 pub use image::{BiasUnit, Departure, EffectsCost, ImageBias, ImageUse, PixelUse};
 pub use problem::{Problem, ProblemKind, Sentence};
+pub use review::{ShaderReview, ShaderStep, ShaderSum, StepVerdict};
 pub use sample::{GroupSample, SampledRows, SampledStores, StoresOfState};
 pub use shader::{BoundVariable, FoundBy, HeldInput, JudgedAs, MistakePlace, ShaderUse};
 pub use stability::{Cost, Examined, StableForm};
@@ -263,6 +265,9 @@ pub struct Report {
     /// The hash of the text of all shader files, where some were judged that are not the suite's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaders_hash: Option<String>,
+    /// The shaders whose steps were looked at.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shaders: Vec<ShaderReview>,
 }
 
 impl Report {
@@ -309,6 +314,7 @@ impl Report {
             config: None,
             shader: None,
             shaders_hash: None,
+            shaders: vec![],
         }
     }
 

@@ -1,17 +1,17 @@
 //! A shader's file, read by naga.
 
-use crate::AdaptError;
-use crate::glsl::{self, PRELUDE_LINES, Role};
+use super::ShaderError;
+use super::glsl::{self, PRELUDE_LINES, Role};
 use lightmeter_files::read;
 use naga::front::{glsl as glsl_in, spv, wgsl};
 use naga::{Module, ShaderStage};
 use std::path::Path;
 
 /// Bytes that a shader's file may have.
-const MOST_BYTES: u64 = 4 << 20;
+pub(super) const MOST_BYTES: u64 = 4 << 20;
 
 /// What a file's ending says of its language.
-const ENDINGS: [(&str, Language); 13] = [
+const ENDINGS: [(&str, Language); 19] = [
     ("wgsl", Language::Wgsl),
     ("spv", Language::Spirv),
     ("frag", Language::Glsl(ShaderStage::Fragment)),
@@ -20,6 +20,12 @@ const ENDINGS: [(&str, Language); 13] = [
     ("fsh", Language::Glsl(ShaderStage::Fragment)),
     ("fp", Language::Glsl(ShaderStage::Fragment)),
     ("psh", Language::Glsl(ShaderStage::Fragment)),
+    ("fshader", Language::Glsl(ShaderStage::Fragment)),
+    ("fragment", Language::Glsl(ShaderStage::Fragment)),
+    ("vshader", Language::Glsl(ShaderStage::Vertex)),
+    ("vertex", Language::Glsl(ShaderStage::Vertex)),
+    ("fragmentshader", Language::Glsl(ShaderStage::Fragment)),
+    ("vertexshader", Language::Glsl(ShaderStage::Vertex)),
     ("vert", Language::Glsl(ShaderStage::Vertex)),
     ("vs", Language::Glsl(ShaderStage::Vertex)),
     ("vsh", Language::Glsl(ShaderStage::Vertex)),
@@ -42,17 +48,17 @@ pub enum Language {
 #[derive(Debug)]
 pub struct ShaderSource {
     /// What it says.
-    pub(crate) module: Module,
+    pub module: Module,
     /// Of GLSL each global variable's name and what it was declared as.
-    pub(crate) roles: Vec<(String, Role)>,
+    pub roles: Vec<(String, Role)>,
     /// Its text; empty of SPIR-V.
     pub text: String,
     /// Its language.
     pub language: Language,
     /// The text that naga read, and how many lines of it stand before the file's own.
-    pub(crate) read: (String, usize),
+    pub read: (String, usize),
     /// Whether it is only functions.
-    pub(crate) is_library: bool,
+    pub is_library: bool,
 }
 
 impl ShaderSource {
@@ -60,9 +66,9 @@ impl ShaderSource {
     ///
     /// # Errors
     /// Where it cannot be read, or naga does not take it: with the line, and what would do.
-    pub fn read(path: &Path) -> Result<Self, AdaptError> {
+    pub fn read(path: &Path) -> Result<Self, ShaderError> {
         let language = language(path)?;
-        let unreadable = |error: std::io::Error| AdaptError::Read { path: path.into(), message: error.to_string() };
+        let unreadable = |error: std::io::Error| ShaderError::File { path: path.into(), message: error.to_string() };
         if language == Language::Spirv {
             let bytes = read::bytes(path, MOST_BYTES).map_err(unreadable)?;
             return of_spirv(path, &bytes);
@@ -72,7 +78,10 @@ impl ShaderSource {
     }
 
     /// Reads a text, as the file of that name.
-    pub(crate) fn of_text(path: &Path, text: &str, language: Language) -> Result<Self, AdaptError> {
+    ///
+    /// # Errors
+    /// Where naga does not take it: with the line, and what would do.
+    pub fn of_text(path: &Path, text: &str, language: Language) -> Result<Self, ShaderError> {
         // Some editors begin a file with a mark of its byte order, and some end lines with CR alone.
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n");
         if let Language::Glsl(stage) = language {
@@ -83,7 +92,8 @@ impl ShaderSource {
     }
 
     /// The line of the file in which something stands that is not read.
-    pub(crate) fn line_of(&self, words: &[&str]) -> Option<usize> {
+    #[must_use]
+    pub fn line_of(&self, words: &[&str]) -> Option<usize> {
         let has = |line: &str| words.iter().any(|word| line.contains(word));
         self.text.lines().position(has).map(|place| place + 1)
     }
@@ -94,12 +104,22 @@ impl Language {
     ///
     /// # Errors
     /// Where it names no language that is read: says what would do.
-    pub fn of(path: &Path) -> Result<Self, AdaptError> {
+    pub fn of(path: &Path) -> Result<Self, ShaderError> {
         language(path)
     }
 }
 
-fn language(path: &Path) -> Result<Language, AdaptError> {
+/// Whether a file's ending is that of a shader.
+#[must_use]
+pub fn is_shader(path: &Path) -> bool {
+    let ending = path.extension().map(|own| own.to_string_lossy().to_lowercase()).unwrap_or_default();
+    ENDINGS.iter().any(|(own, _)| *own == ending) || HLSL.contains(&&*ending)
+}
+
+/// Endings of HLSL.
+pub(super) const HLSL: [&str; 4] = ["hlsl", "hlsli", "fx", "fxh"];
+
+fn language(path: &Path) -> Result<Language, ShaderError> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if let Some((_, language)) = ENDINGS.iter().find(|(own, _)| *own == ending) {
         return Ok(*language);
@@ -110,13 +130,13 @@ fn language(path: &Path) -> Result<Language, AdaptError> {
         "slang" => by_spirv("slangc -target spirv -o shader.spv"),
         _ => "its ending names no language; expected .wgsl, .frag, .vert or .glsl, or .spv".to_owned(),
     };
-    Err(AdaptError::Language { path: path.into(), message })
+    Err(ShaderError::Language { path: path.into(), message })
 }
 
-fn of_spirv(path: &Path, bytes: &[u8]) -> Result<ShaderSource, AdaptError> {
+fn of_spirv(path: &Path, bytes: &[u8]) -> Result<ShaderSource, ShaderError> {
     let options =
         spv::Options { adjust_coordinate_space: false, strict_capabilities: false, ..spv::Options::default() };
-    let module = spv::parse_u8_slice(bytes, &options).map_err(|error| AdaptError::Invalid {
+    let module = spv::parse_u8_slice(bytes, &options).map_err(|error| ShaderError::Invalid {
         path: path.into(),
         line: None,
         message: format!("it is no SPIR-V that naga reads: {error}"),
@@ -125,18 +145,18 @@ fn of_spirv(path: &Path, bytes: &[u8]) -> Result<ShaderSource, AdaptError> {
     Ok(ShaderSource { module, roles: vec![], text, language: Language::Spirv, read, is_library: false })
 }
 
-fn of_wgsl(path: &Path, text: &str) -> Result<Module, AdaptError> {
-    wgsl::parse_str(text).map_err(|error| AdaptError::Invalid {
+fn of_wgsl(path: &Path, text: &str) -> Result<Module, ShaderError> {
+    wgsl::parse_str(text).map_err(|error| ShaderError::Invalid {
         path: path.into(),
         line: error.location(text).map(|place| place.line_number as usize),
         message: error.message().to_owned(),
     })
 }
 
-fn of_glsl(path: &Path, own: String, stage: ShaderStage) -> Result<ShaderSource, AdaptError> {
+fn of_glsl(path: &Path, own: String, stage: ShaderStage) -> Result<ShaderSource, ShaderError> {
     // Messages have the names that people wrote.
     let invalid =
-        |line, message: String| AdaptError::Invalid { path: path.into(), line, message: glsl::shown(&message) };
+        |line, message: String| ShaderError::Invalid { path: path.into(), line, message: glsl::shown(&message) };
     if let Some((line, word)) = unread(&own) {
         return Err(invalid(Some(line), word));
     }

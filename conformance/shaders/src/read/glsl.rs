@@ -8,7 +8,7 @@ mod fixed_function;
 
 /// What a variable was declared as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Role {
+pub enum Role {
     /// The same for all invocations.
     Uniform,
     /// From the stage before.
@@ -50,26 +50,45 @@ const RESERVED: [&str; 10] =
     ["sample", "sampler", "buffer", "shared", "patch", "precise", "coherent", "restrict", "volatile", "subroutine"];
 
 /// The names that people wrote, in a message or as a name.
-pub(crate) fn shown(text: &str) -> String {
-    text.replace(COLOR, "gl_FragColor").replace(AS_NAME, "")
+#[must_use]
+pub fn shown(text: &str) -> String {
+    text.replace(COLOR, "gl_FragColor").replace(AS_NAME, "").replace(SAMPLE, "texture")
 }
 const HELPERS: &str = "vec4 lightmeter_texture(vec4 t, vec2 at) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at) { return t; } \
     vec4 lightmeter_texture(vec4 t, vec2 at, float bias) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at, float bias) { return t; } \
-    float lightmeter_texture(float t, vec3 at) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } ";
+    vec4 lightmeter_texture(vec4 t, float at) { return t; } vec4 lightmeter_texture(vec4 t, vec4 at) { return t; } \
+    vec4 lightmeter_texture(vec4 t, ivec2 at) { return t; } vec4 lightmeter_texture(vec4 t, ivec2 at, int level) { return t; } \
+    vec4 lightmeter_texture(vec4 t, ivec3 at, int level) { return t; } vec4 lightmeter_texture(vec4 t, int at) { return t; } \
+    vec4 lightmeter_texture(vec4 t, vec2 at, ivec2 by) { return t; } vec4 lightmeter_texture(vec4 t, vec2 at, vec2 dx, vec2 dy) { return t; } \
+    vec4 lightmeter_texture(vec4 t, vec3 at, vec3 dx, vec3 dy) { return t; } vec4 lightmeter_texture(vec4 t, vec2 at, float level, ivec2 by) { return t; } \
+    float lightmeter_texture(float t, vec3 at) { return t; } float lightmeter_texture(float t, vec4 at) { return t; } \
+    float lightmeter_texture(float t, vec3 at, float level) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } ";
 
 /// Built-in functions that sample.
-const SAMPLING: [&str; 9] = [
+const SAMPLING: [&str; 21] = [
     "texture",
     "texture2D",
+    "texture3D",
     "textureCube",
+    "textureCubeLod",
     "texture2DLod",
     "textureLod",
     "texture2DProj",
     "textureProj",
     "texture2DLodEXT",
+    "texture2DGradEXT",
+    "textureCubeLodEXT",
+    "textureLodOffset",
+    "textureOffset",
+    "textureGrad",
+    "texelFetch",
+    "texture2DRect",
+    "texture2DArray",
     "shadow2D",
+    "shadow2DProj",
+    "imageLoad",
 ];
-const INTERPOLATION: [&str; 12] = [
+const INTERPOLATION: [&str; 15] = [
     "flat",
     "smooth",
     "noperspective",
@@ -82,6 +101,9 @@ const INTERPOLATION: [&str; 12] = [
     "patch",
     "readonly",
     "writeonly",
+    "restrict",
+    "coherent",
+    "volatile",
 ];
 
 /// A word, a mark, or what stands between them.
@@ -157,7 +179,13 @@ fn directive(text: &str) -> usize {
 pub(crate) fn normalised(text: &str) -> Normalised {
     let tokens = tokens(text);
     let mut out = Normalised::default();
-    let uses_color = tokens.iter().any(|token| matches!(token, Token::Word("gl_FragColor" | "gl_FragData")));
+    let is_color = |token: &Token<'_>| match token {
+        Token::Word(word) => matches!(*word, "gl_FragColor" | "gl_FragData"),
+        // A macro may stand for it.
+        Token::Space(space) => space.starts_with('#') && space.contains("gl_FragColor"),
+        Token::Mark(_) => false,
+    };
+    let uses_color = tokens.iter().any(is_color);
     out.text = HELPERS.to_owned();
     if uses_color {
         out.text += &format!("vec4 {COLOR}; ");
@@ -242,7 +270,11 @@ fn declare(statement: &[Token<'_>], out: &mut Normalised) {
     match (at(first), role) {
         (Token::Word("precision"), _) => blank(statement, &mut out.text),
         (Token::Mark(";"), _) => blank(statement, &mut out.text),
-        (_, None) => written(&statement[if first > 0 { start } else { 0 }..], &mut out.text),
+        (_, None) => {
+            let (qualifiers, rest) = statement.split_at(if first > 0 { start } else { 0 });
+            blank(qualifiers, &mut out.text);
+            written(rest, &mut out.text);
+        }
         (Token::Word(_), Some(role)) => {
             blank(&statement[..start], &mut out.text);
             let is_struct = at(first) == Token::Word("struct");
@@ -486,7 +518,7 @@ mod tests {
     fn names_that_naga_reserves_are_names() {
         let own = lines("uniform sampler2D sampler;\nvoid main() { vec4 sample = texture2D(sampler, vec2(0)); }");
         assert_eq!(shown(&own[0]), "vec4 sampler;");
-        assert_eq!(shown(&own[1]), "void main() { vec4 sample = lightmeter_texture(sampler, vec2(0)); }");
+        assert_eq!(shown(&own[1]), "void main() { vec4 sample = texture(sampler, vec2(0)); }");
         assert!(own.iter().all(|line| line.contains(AS_NAME)), "{own:?}");
         // Where they are types and qualifiers they stay so.
         let own = lines("vec4 f(sampler s, precise float x) { return vec4(x); }");

@@ -1,0 +1,60 @@
+//! Evaluates the part of a graph between a value and a cut, many times.
+
+use super::value::apply;
+use super::{Graph, NodeId, Op, Type, Value};
+use num_traits::Float;
+use smallvec::SmallVec;
+
+/// What is computed between a value and a cut, made ready to be evaluated for values of the cut.
+#[derive(Debug)]
+pub struct Evaluation<'a> {
+    graph: &'a Graph,
+    /// Each node with the places of its operands and its own.
+    steps: Vec<(NodeId, SmallVec<[usize; 4]>, usize)>,
+    constants: Vec<(usize, Value<f64>)>,
+    places: usize,
+    root: usize,
+}
+
+impl<'a> Evaluation<'a> {
+    /// Of a value as a function of a cut; none where it needs a leaf that is not of the cut, or more than `most` operations.
+    #[must_use]
+    pub fn new(graph: &'a Graph, root: NodeId, cut: &[NodeId], most: usize) -> Option<Self> {
+        let cone = graph.cone(root, cut, most)?;
+        let place = |id: NodeId| {
+            cut.iter().position(|own| *own == id).or_else(|| cone.binary_search(&id).ok().map(|k| k + cut.len()))
+        };
+        let mut own =
+            Self { graph, steps: vec![], constants: vec![], places: cut.len() + cone.len(), root: place(root)? };
+        for (k, id) in cone.iter().enumerate() {
+            let here = cut.len() + k;
+            match graph.op(*id) {
+                Op::Leaf(_) => return None,
+                Op::Constant(_) => own.constants.push((here, graph.constant_of(*id)?)),
+                op => {
+                    let operands = op.operands().into_iter().map(place).collect::<Option<_>>()?;
+                    own.steps.push((*id, operands, here));
+                }
+            }
+        }
+        Some(own)
+    }
+
+    /// The value, given those of the cut.
+    pub fn value<N: Float>(&self, given: &[Value<N>], buffer: &mut Vec<Value<N>>) -> Value<N> {
+        buffer.clear();
+        buffer.extend_from_slice(given);
+        buffer.resize(self.places, Value::zero(0));
+        for (place, constant) in &self.constants {
+            let number = |own: &f64| N::from(*own).unwrap_or_else(N::nan);
+            buffer[*place] = constant.components().iter().map(number).collect();
+        }
+        for (id, operands, place) in &self.steps {
+            let values: SmallVec<[Value<N>; 4]> = operands.iter().map(|operand| buffer[*operand]).collect();
+            let own = self.graph.op(*id);
+            let types: SmallVec<[Type; 4]> = own.operands().iter().map(|operand| self.graph.ty(*operand)).collect();
+            buffer[*place] = apply(own, self.graph.ty(*id), &values, &types);
+        }
+        buffer[self.root]
+    }
+}

@@ -1,0 +1,156 @@
+//! A file's steps, over all that it may be read as.
+
+use super::Review;
+use crate::graph::Graph;
+use crate::lower::{Lowering, Root};
+use crate::read::{ReadOptions, ShaderError, ShaderReading, readings};
+use crate::unify::Library;
+use lightmeter_document::report::{ShaderReview, ShaderStep, ShaderSum};
+use naga::{Block, Function, Handle, Statement};
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Reviews files.
+#[derive(Debug)]
+pub struct Reviewer {
+    library: Library,
+}
+
+/// Functions of the reader's own.
+fn is_ours(name: &str) -> bool {
+    name.starts_with("lightmeter_") || name == "main" || name == "ftransform"
+}
+
+impl Reviewer {
+    /// Makes the forms ready that steps are compared with.
+    ///
+    /// # Errors
+    /// Which form is not as it should be: none that is built in.
+    pub fn new() -> Result<Self, String> {
+        Ok(Self { library: Library::new()? })
+    }
+
+    /// Reads a file, and finds its steps.
+    ///
+    /// # Errors
+    /// Where nobody reads it.
+    pub fn review(&self, path: &Path, options: &ReadOptions) -> Result<ShaderReview, ShaderError> {
+        let readings = readings(path, options)?;
+        let mut found = ShaderReview {
+            file: path.to_string_lossy().into_owned(),
+            unread: None,
+            language: readings.first().map(|own| own.language.clone()).unwrap_or_default(),
+            reader: readings.first().map(|own| own.reader.clone()).unwrap_or_default(),
+            notes: vec![],
+            steps: vec![],
+            sums: vec![],
+        };
+        for reading in &readings {
+            let (steps, sums, notes) = self.reviewed(reading);
+            found.notes.extend(reading.notes.iter().cloned().chain(notes));
+            for step in steps {
+                let is_known =
+                    |own: &ShaderStep| own.line == step.line && own.kind == step.kind && own.name == step.name;
+                if !found.steps.iter().any(is_known) {
+                    found.steps.push(step);
+                }
+            }
+            found.sums.extend(sums.into_iter().filter(|sum| !found.sums.contains(sum)).collect::<Vec<_>>());
+        }
+        let mut seen = HashSet::new();
+        found.notes.retain(|note| seen.insert(note.clone()));
+        found.steps.sort_by_key(|step| step.line);
+        Ok(found)
+    }
+
+    fn reviewed(&self, reading: &ShaderReading) -> (Vec<ShaderStep>, Vec<ShaderSum>, Vec<String>) {
+        let module = &reading.module;
+        let called = called(reading);
+        let mut lowering = Lowering::new(module, reading);
+        let mut roots = vec![];
+        if reading.has_entry {
+            roots.extend(module.entry_points.iter().map(|own| lowering.root(&own.function, &own.name, true)));
+        }
+        let alone = |handle: &Handle<Function>| !called.contains(handle);
+        for (handle, function) in module.functions.iter() {
+            let name = function.name.clone().unwrap_or_default();
+            if alone(&handle) && !is_ours(&name) {
+                roots.push(lowering.root(function, &name, false));
+            }
+        }
+        let mut notes = std::mem::take(&mut lowering.notes);
+        if lowering.has_loops {
+            notes.push("a loop is shown by its first turn".into());
+        }
+        let graph = lowering.graph;
+        let (mut steps, sums) = self.steps_of(&graph, &roots, reading);
+        // What is called, but not on a way that outputs take: each by itself.
+        let covered = covered(&graph, &roots);
+        let mut more = Lowering::new(module, reading);
+        let mut others = vec![];
+        for (handle, function) in module.functions.iter() {
+            let name = function.name.clone().unwrap_or_default();
+            if called.contains(&handle) && !is_ours(&name) {
+                others.push(more.root(function, &name, false));
+            }
+        }
+        let (others, _) = self.steps_of(&more.graph, &others, reading);
+        let lines = |step: &ShaderStep| std::iter::once(step.line).chain(step.also.iter().copied()).collect::<Vec<_>>();
+        let known: Vec<u32> = steps.iter().flat_map(lines).collect();
+        steps.extend(others.into_iter().filter(|step| {
+            let is_seen = lines(step).iter().any(|line| covered.contains(line) || known.contains(line));
+            !is_seen && !matches!(&*step.kind, "terms" | "value")
+        }));
+        (steps, sums, notes)
+    }
+
+    fn steps_of(&self, graph: &Graph, roots: &[Root], reading: &ShaderReading) -> (Vec<ShaderStep>, Vec<ShaderSum>) {
+        let mut review = Review::new(graph, &self.library, reading.is_vertex());
+        review.roots(roots);
+        (review.steps, review.sums)
+    }
+}
+
+/// The lines of all that outputs are made of.
+fn covered(graph: &Graph, roots: &[Root]) -> HashSet<u32> {
+    let outputs = roots.iter().flat_map(|root| &root.outputs);
+    let values = outputs.flat_map(|output| graph.all_of(output.value));
+    values.flat_map(|own| graph.occurrences(own).iter().map(|place| place.line).collect::<Vec<_>>()).collect()
+}
+
+/// Functions that an entry point calls, or another function.
+fn called(reading: &ShaderReading) -> HashSet<Handle<Function>> {
+    let module = &reading.module;
+    let (mut found, mut todo) = (HashSet::new(), vec![]);
+    for own in module.entry_points.iter().filter(|_| reading.has_entry) {
+        callees(&own.function.body, &mut todo);
+    }
+    for (_, function) in module.functions.iter() {
+        callees(&function.body, &mut todo);
+    }
+    while let Some(handle) = todo.pop() {
+        if found.insert(handle) {
+            callees(&module.functions[handle].body, &mut todo);
+        }
+    }
+    found
+}
+
+fn callees(block: &Block, found: &mut Vec<Handle<Function>>) {
+    for statement in block.iter() {
+        match statement {
+            Statement::Call { function, .. } => found.push(*function),
+            Statement::Block(inner) => callees(inner, found),
+            Statement::If { accept, reject, .. } => {
+                callees(accept, found);
+                callees(reject, found);
+            }
+            Statement::Loop { body, continuing, .. } => {
+                callees(body, found);
+                callees(continuing, found);
+            }
+            Statement::Switch { cases, .. } => cases.iter().for_each(|case| callees(&case.body, found)),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Shaders as people write them, and the steps that are found in each.
+
+use lightmeter_document::report::{ShaderReview, StepVerdict};
+use lightmeter_shaders::Reviewer;
+use lightmeter_shaders::read::ReadOptions;
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+static REVIEWER: LazyLock<Reviewer> = LazyLock::new(|| Reviewer::new().expect("the forms are read"));
+
+fn file(name: &str, text: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("lightmeter-steps-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for the test");
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("the folder can be written to");
+    path
+}
+
+fn review(name: &str, text: &str) -> ShaderReview {
+    let path = file(name, text);
+    REVIEWER.review(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// `line kind verdict name` of each step.
+fn steps(name: &str, text: &str) -> Vec<String> {
+    let word = |verdict: StepVerdict| match verdict {
+        StepVerdict::Right => "right",
+        StepVerdict::Dialect => "dialect",
+        StepVerdict::Mistake => "mistake",
+        StepVerdict::Perhaps => "perhaps",
+    };
+    let told = |step: &lightmeter_document::report::ShaderStep| {
+        format!("{} {} {} {}", step.line, step.kind, word(step.verdict), step.name).trim_end().to_owned()
+    };
+    review(name, text).steps.iter().map(told).collect()
+}
+
+const HEAD: &str = "#version 330 core
+in vec3 normal; in vec3 position; out vec4 color;
+uniform vec3 lightPosition, eyePosition, lightColor, material, ambient;
+uniform float shininess, kc, kl, kq;
+void main() {
+vec3 n = normalize(normal); vec3 l = normalize(lightPosition - position); vec3 v = normalize(eyePosition - position);
+";
+
+/// The steps of a body that begins on line 7.
+fn body(name: &str, text: &str) -> Vec<String> {
+    steps(&format!("{name}.frag"), &format!("{HEAD}{text}\n}}\n"))
+}
+
+#[test]
+fn what_is_right_is_right_however_it_is_written() {
+    let rows: &[(&str, &str, &[&str])] = &[
+        ("max", "color = vec4(material * lightColor * max(dot(n, l), 0.0), 1.0);", &["7 lambert right"]),
+        ("clamp", "color = vec4(material * lightColor * clamp(dot(l, n), 0.0, 1.0), 1.0);", &["7 lambert right"]),
+        (
+            "branch",
+            "float c = dot(n, l);\nif (c < 0.0) c = 0.0;\ncolor = vec4(material * lightColor * c, 1.0);",
+            &["8 lambert right"],
+        ),
+        (
+            "reflect by hand",
+            "vec3 r = 2.0 * dot(n, l) * n - l;\ncolor = vec4(lightColor * pow(max(dot(r, v), 0.0), shininess), 1.0);",
+            &["8 phong right"],
+        ),
+        (
+            "half vector by length",
+            "vec3 h = (l + v) / length(l + v);\ncolor = vec4(lightColor * pow(max(dot(n, h), 0.0), shininess), 1.0);",
+            &["8 blinn right"],
+        ),
+        (
+            "attenuation by Horner",
+            "float d = distance(lightPosition, position);\ncolor = vec4(material * max(dot(n, l), 0.0) / (kc + d * (kl + d * kq)), 1.0);",
+            &["8 lambert right", "8 attenuation right"],
+        ),
+    ];
+    for (name, text, expected) in rows {
+        assert_eq!(body(name, text), *expected, "{name}");
+    }
+}
+
+#[test]
+#[expect(clippy::too_many_lines, reason = "a table")]
+fn each_mistake_is_called_by_its_name() {
+    let rows: &[(&str, &str, &str)] = &[
+        ("not clamped", "color = vec4(material * lightColor * dot(n, l), 1.0);", "7 lambert mistake not-clamped"),
+        (
+            "both sides",
+            "color = vec4(material * lightColor * abs(dot(n, l)), 1.0);",
+            "7 lambert mistake incidence-of-both-sides",
+        ),
+        (
+            "light reversed",
+            "vec3 w = normalize(position - lightPosition);\ncolor = vec4(material * lightColor * max(dot(n, w), 0.0), 1.0);",
+            "8 lambert mistake light-reversed",
+        ),
+        (
+            "not normalised",
+            "color = vec4(material * lightColor * max(dot(normal, l), 0.0), 1.0);",
+            "7 length mistake normal-not-normalised",
+        ),
+        (
+            "mean",
+            "color = vec4(lightColor * pow(max(dot(n, (l + v) * 0.5), 0.0), shininess), 1.0);",
+            "7 blinn mistake half-vector-as-mean",
+        ),
+        (
+            "unguarded",
+            "color = vec4(lightColor * pow(dot(n, normalize(l + v)), shininess), 1.0);",
+            "7 blinn mistake unguarded",
+        ),
+        (
+            "eye reversed",
+            "color = vec4(lightColor * max(dot(n, l), 0.0) + lightColor * pow(max(dot(reflect(-l, n), -v), 0.0), shininess), 1.0);",
+            "7 phong mistake view-reversed",
+        ),
+        (
+            "times lambert",
+            "float c = max(dot(n, l), 0.0);\ncolor = vec4(lightColor * c * (material + pow(max(dot(n, normalize(l + v)), 0.0), shininess)), 1.0);",
+            "8 terms mistake highlight-times-lambert",
+        ),
+        (
+            "one attenuated",
+            "float d = length(lightPosition - position); float a = 1.0 / (kc + kl * d + kq * d * d);\n\
+             color = vec4(a * material * max(dot(n, l), 0.0) + lightColor * pow(max(dot(n, normalize(l + v)), 0.0), shininess), 1.0);",
+            "8 terms mistake specular-not-attenuated",
+        ),
+        (
+            "ambient as a factor",
+            "color = vec4(ambient * material * lightColor * max(dot(n, l), 0.0), 1.0);",
+            "7 terms mistake ambient-multiplies-diffuse",
+        ),
+        (
+            "no value",
+            "vec3 sum;\nsum += material * max(dot(n, l), 0.0);\ncolor = vec4(sum, 1.0);",
+            "8 value mistake not-initialised",
+        ),
+        (
+            "first term alone",
+            "float d = length(lightPosition - position);\ncolor = vec4(material * max(dot(n, l), 0.0) * (1.0 / kc + kl * d + kq * d * d), 1.0);",
+            "8 attenuation mistake reciprocal-of-the-first-term",
+        ),
+    ];
+    for (name, text, expected) in rows {
+        let found = body(name, text);
+        assert!(found.iter().any(|own| own == expected), "{name}: {found:?}");
+        let mistakes = found.iter().filter(|own| own.contains(" mistake ")).count();
+        assert_eq!(mistakes, 1, "{name}: {found:?}");
+    }
+}
+
+#[test]
+fn what_looks_like_a_step_and_is_none_is_not_claimed() {
+    let rows = [
+        ("shadow bias", "float bias = max(0.05 * (1.0 - dot(n, l)), 0.005);\ncolor = vec4(material * bias, 1.0);"),
+        ("unlit", "color = vec4(material * dot(material, vec3(0.2126, 0.7152, 0.0722)), 1.0);"),
+        ("vignette", "color = vec4(material * clamp(1.0 - length(position.xy), 0.2, 1.0), 1.0);"),
+        ("alpha alone", "color.rgb = material;"),
+    ];
+    for (name, text) in rows {
+        let found = body(name, text);
+        assert!(!found.iter().any(|own| own.contains("mistake")), "{name}: {found:?}");
+    }
+}
+
+#[test]
+fn fog_is_told_by_its_form_and_how_it_is_mixed() {
+    let head = "varying vec3 p; uniform vec3 fogColor, lit; uniform float fogStart, fogEnd, density;\nvoid main() { float d = length(p);\n";
+    let rows: &[(&str, &str, &[&str])] = &[
+        (
+            "exp",
+            "float f = exp(-density * d);\ngl_FragColor = vec4(mix(fogColor, lit, f), 1.0);",
+            &["3 fog right exp", "4 fog-mix right"],
+        ),
+        (
+            "turned",
+            "float f = exp(-density * d);\ngl_FragColor = vec4(mix(lit, fogColor, f), 1.0);",
+            &["3 fog right exp", "4 fog-mix mistake fog-mixed-the-wrong-way"],
+        ),
+        (
+            "linear",
+            "float f = clamp((fogEnd - d) / (fogEnd - fogStart), 0.0, 1.0);\ngl_FragColor = vec4(mix(fogColor, lit, f), 1.0);",
+            &["3 fog right", "4 fog-mix right"],
+        ),
+        (
+            "base two",
+            "float f = exp2(-density * d);\ngl_FragColor = vec4(mix(fogColor, lit, f), 1.0);",
+            &["3 fog mistake fog-base-two", "4 fog-mix right"],
+        ),
+        (
+            "by log2(e)",
+            "float f = exp2(-density * density * d * d * 1.442695);\ngl_FragColor = vec4(mix(fogColor, lit, f), 1.0);",
+            &["3 fog right exp2-opengl", "4 fog-mix right"],
+        ),
+    ];
+    for (name, text, expected) in rows {
+        assert_eq!(steps(&format!("fog {name}.fs"), &format!("{head}{text}\n}}\n")), *expected, "{name}");
+    }
+}
+
+#[test]
+fn all_languages_give_the_same_steps() {
+    let wgsl = "struct In { @location(0) normal: vec3f, @location(1) position: vec3f }
+@group(0) @binding(0) var<uniform> lightPosition: vec3f;
+@fragment fn main(i: In) -> @location(0) vec4f {
+  let l = normalize(lightPosition - i.position);
+  return vec4f(vec3f(max(dot(normalize(i.normal), l), 0.0)), 1.0);
+}
+";
+    assert_eq!(steps("language.wgsl", wgsl), ["5 lambert right"]);
+    let old = "varying vec3 normal, position;\nvoid main() {\n  vec3 l = normalize(gl_LightSource[0].position.xyz - position);\n  gl_FragColor = gl_FrontMaterial.diffuse * max(dot(normalize(normal), l), 0.0);\n}\n";
+    assert_eq!(steps("language.fs", old), ["4 lambert right"]);
+    assert_eq!(steps("carriage.fs", &old.replace('\n', "\r")), ["4 lambert right"]);
+    let function = "float lit(vec3 normal, vec3 toLight) {\n  return max(dot(normal, toLight), 0.0);\n}\n";
+    assert_eq!(steps("function.glsl", function), ["2 lambert right"]);
+    let hlsl = "float3 lightPosition;\nfloat4 main(float3 normal : NORMAL, float3 position : TEXCOORD0) : SV_Target {\n  float3 l = normalize(lightPosition - position);\n  return saturate(dot(normalize(normal), l));\n}\n";
+    let path = file("language.hlsl", hlsl);
+    match REVIEWER.review(&path, &ReadOptions::default()) {
+        Ok(review) => assert_eq!((review.steps.len(), review.steps[0].line, &*review.steps[0].kind), (1, 4, "lambert")),
+        Err(error) => assert!(error.to_string().contains("none is installed"), "{error}"),
+    }
+}
+
+#[test]
+fn what_is_not_there_is_stubbed_and_said() {
+    let text = "#include \"missing.h\"\nvarying vec3 normal;\nuniform vec3 toLight;\nvoid main() {\n  gl_FragColor = vec4(albedo * max(dot(normalize(normal), toLight), 0.0), 1.0);\n}\n";
+    let found = review("missing.fs", text);
+    assert_eq!(found.steps[0].line, 5);
+    assert!(found.notes.iter().any(|note| note.contains("missing.h") && note.contains("-I DIR")), "{:?}", found.notes);
+    assert!(found.notes.iter().any(|note| note.contains("`albedo` is not declared")), "{:?}", found.notes);
+}
+
+#[test]
+fn included_files_are_read_below_the_folders_that_are_given_and_nowhere_else() {
+    let include = file("factor.h", "float factor(vec3 n, vec3 l) { return max(dot(n, l), 0.0); }\n");
+    let folder = include.parent().expect("a folder").to_owned();
+    let text = "#include \"factor.h\"\nvarying vec3 normal;\nuniform vec3 toLight;\nvoid main() {\n  gl_FragColor = vec4(factor(normalize(normal), toLight));\n}\n";
+    let path = file("includes.fs", text);
+    let options = ReadOptions { include: vec![folder.clone()], defines: vec![] };
+    let found = REVIEWER.review(&path, &options).expect("it is read");
+    // What is included is of the directive's line.
+    assert_eq!((found.steps[0].line, found.notes.len()), (1, 0), "{found:?}");
+    let above = file("above.fs", &text.replace("factor.h", "../../etc/passwd"));
+    let found = REVIEWER.review(&above, &options).expect("it is read without");
+    assert!(found.notes.iter().any(|note| note.contains("is not there")), "{:?}", found.notes);
+}
+
+#[test]
+fn macros_of_the_host_choose_what_is_read() {
+    let text = "varying vec3 normal;\nuniform vec3 toLight;\nvoid main() {\n#if LIGHTS == 2\n  gl_FragColor = vec4(abs(dot(normalize(normal), toLight)));\n#else\n  gl_FragColor = vec4(max(dot(normalize(normal), toLight), 0.0));\n#endif\n}\n";
+    let path = file("macros.fs", text);
+    let options = ReadOptions { include: vec![], defines: vec![("LIGHTS".into(), "1".into())] };
+    let found = REVIEWER.review(&path, &options).expect("it is read");
+    assert_eq!((found.steps.len(), found.steps[0].line), (1, 7), "{found:?}");
+    // Without them each is tried that it compares with.
+    let found = review("macros.fs", text);
+    assert!(found.steps.iter().any(|step| step.line == 5), "{found:?}");
+}
+
+#[test]
+fn a_loop_shows_its_first_turn_and_no_array_is_called_unset() {
+    let text = "varying vec3 normal;\nuniform vec3 lights[4], colors[4];\nvoid main() {\n  vec3 sum = vec3(0.0); float c[4];\n  for (int i = 0; i < 4; i++) {\n    c[i] = max(dot(normalize(normal), lights[i]), 0.0);\n    sum += colors[i] * c[i];\n  }\n  gl_FragColor = vec4(sum * c[3], 1.0);\n}\n";
+    let found = review("loop.fs", text);
+    assert!(found.steps.iter().all(|step| step.kind == "lambert"), "{found:?}");
+    assert!(found.notes.iter().any(|note| note.contains("first turn")), "{:?}", found.notes);
+}
+
+#[test]
+fn what_is_no_shader_is_told_with_its_line() {
+    let error = |name: &str, text: &str| {
+        let path = file(name, text);
+        REVIEWER.review(&path, &ReadOptions::default()).expect_err(name).to_string()
+    };
+    assert!(error("empty.frag", " \n").ends_with("it is empty"));
+    assert!(error("binary.frag", "void\0").ends_with("it is no text"));
+    assert!(error("words.frag", "\nhello world\n").contains("words.frag:2:"));
+    assert!(
+        error("deep.frag", &format!("void main() {{\n float x = {}1.0{};\n}}", "(".repeat(300), ")".repeat(300)))
+            .contains("deep.frag:2: it nests")
+    );
+    assert!(error("what.xyz", "hello").contains("its ending names no language"));
+    assert!(error("geometry.geom", "void main() {\n EmitVertex();\n vec3 x; return;\n}").contains(":2: `EmitVertex`"));
+}

@@ -1,0 +1,120 @@
+//! What is found in shaders, in words.
+
+use lightmeter::document::report::{ShaderReview, ShaderStep, ShaderSum, StepVerdict};
+use std::fmt::Write as _;
+
+/// Characters of a source line that are shown.
+const MOST_SOURCE: usize = 64;
+/// Terms of a sum that are shown.
+const MOST_TERMS: usize = 6;
+/// Characters of a line.
+const WIDTH: usize = 100;
+
+const fn mark(verdict: StepVerdict) -> &'static str {
+    match verdict {
+        StepVerdict::Right => "✓",
+        StepVerdict::Dialect => "~",
+        StepVerdict::Mistake => "✗",
+        StepVerdict::Perhaps => "?",
+    }
+}
+
+/// `1 step`, `2 steps`.
+fn number(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// Text of at most so many characters.
+fn cut(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+pub(super) fn told(shaders: &[ShaderReview]) -> String {
+    let mut text = String::new();
+    for shader in shaders {
+        let _ = tell(shader, &mut text);
+    }
+    if shaders.len() > 1 {
+        let all = |verdict: StepVerdict| shaders.iter().map(|own| own.count(verdict)).sum::<usize>();
+        let steps: usize = shaders.iter().map(|own| own.steps.len()).sum();
+        let unread = shaders.iter().filter(|own| own.unread.is_some()).count();
+        let mut parts = vec![number(shaders.len(), "file"), number(steps, "step")];
+        for (verdict, word) in [
+            (StepVerdict::Mistake, "wrong"),
+            (StepVerdict::Perhaps, "perhaps wrong"),
+            (StepVerdict::Dialect, "in a dialect"),
+        ] {
+            parts.extend((all(verdict) > 0).then(|| format!("{} {word}", all(verdict))));
+        }
+        parts.extend((unread > 0).then(|| format!("{unread} not read")));
+        let _ = writeln!(text, "{}", parts.join(", "));
+    }
+    text
+}
+
+fn tell(shader: &ShaderReview, text: &mut String) -> std::fmt::Result {
+    if let Some(why) = &shader.unread {
+        // `12: what is wrong` is of a line.
+        let colon = if why.starts_with(|c: char| c.is_ascii_digit()) { ":" } else { ": " };
+        return writeln!(text, "{}{colon}{why}\n", shader.file);
+    }
+    let by = if shader.reader == "naga" { String::new() } else { format!(" (read by {})", shader.reader) };
+    let steps =
+        if shader.steps.is_empty() { "no step that is known".to_owned() } else { number(shader.steps.len(), "step") };
+    writeln!(text, "{}: {}{by}, {steps}", shader.file, shader.language)?;
+    for note in &shader.notes {
+        writeln!(text, "  note: {note}")?;
+    }
+    if shader.steps.is_empty() {
+        return writeln!(text);
+    }
+    writeln!(text)?;
+    let source = std::fs::read(&shader.file)
+        .map(|bytes| String::from_utf8_lossy(&bytes).replace("\r\n", "\n").replace('\r', "\n"));
+    let source = source.unwrap_or_default();
+    let width = shader.steps.iter().map(|step| step.kind.len()).max().unwrap_or(0);
+    for step in &shader.steps {
+        tell_step(step, &source, width, text)?;
+    }
+    for sum in &shader.sums {
+        tell_sum(sum, text)?;
+    }
+    let wrong = shader.count(StepVerdict::Mistake);
+    if wrong > 0 {
+        let are = if wrong == 1 { "is" } else { "are" };
+        writeln!(text, "✗ {wrong} of {} {are} wrong", number(shader.steps.len(), "step"))?;
+    }
+    writeln!(text)
+}
+
+fn tell_step(step: &ShaderStep, source: &str, width: usize, text: &mut String) -> std::fmt::Result {
+    let line = (step.line as usize).checked_sub(1).and_then(|k| source.lines().nth(k)).map(str::trim);
+    let shown = line.filter(|own| !own.is_empty()).unwrap_or(&step.code);
+    let place = if step.line == 0 { String::new() } else { step.line.to_string() };
+    let name = if step.name.is_empty() || step.verdict == StepVerdict::Right {
+        String::new()
+    } else {
+        format!(" {}", step.name)
+    };
+    let shown = cut(shown, MOST_SOURCE);
+    writeln!(text, "{place:>5}  {:<width$}  {shown:<MOST_SOURCE$}  {}{name}", step.kind, mark(step.verdict))?;
+    if step.verdict != StepVerdict::Right {
+        let indent = " ".repeat(9 + width);
+        let options = textwrap::Options::new(WIDTH).initial_indent(&indent).subsequent_indent(&indent);
+        writeln!(text, "{}", textwrap::fill(&step.sentence, options))?;
+    }
+    Ok(())
+}
+
+fn tell_sum(sum: &ShaderSum, text: &mut String) -> std::fmt::Result {
+    let more = sum.terms.len().saturating_sub(MOST_TERMS);
+    let mut terms: Vec<String> = sum.terms.iter().take(MOST_TERMS).cloned().collect();
+    terms.extend((more > 0).then(|| format!("{more} more")));
+    let then: String = sum.then.iter().map(|own| format!(", then {own}")).collect();
+    let said = format!("{} = {}{then}", sum.output, terms.join(" + "));
+    let options = textwrap::Options::new(WIDTH).initial_indent("  ").subsequent_indent("      ");
+    writeln!(text, "\n{}", textwrap::fill(&said, options))
+}

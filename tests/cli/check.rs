@@ -1,0 +1,93 @@
+//! `lightmeter check`: shaders step by step.
+
+use super::{code, lightmeter, stderr, stdout};
+use crate::place::folder;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+const RIGHT: &str = "varying vec3 n;\nuniform vec3 toLight;\nvoid main() {\n  gl_FragColor = vec4(max(dot(normalize(n), toLight), 0.0));\n}\n";
+
+fn shader(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("the folder can be made");
+    std::fs::write(&path, text).expect("the folder can be written to");
+    path
+}
+
+fn check(given: &[&str]) -> (i32, String, String) {
+    let output = lightmeter(&[&["check"], given].concat());
+    (code(&output), stdout(&output), stderr(&output))
+}
+
+#[test]
+fn steps_are_told_with_their_lines_and_the_exit_code_says_whether_one_is_wrong() {
+    let own = folder("check-right");
+    let right = shader(&own, "right.frag", RIGHT);
+    let (code, said, _) = check(&[&right.display().to_string()]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("right.frag: GLSL, 1 step") && said.contains("4  lambert") && said.contains('✓'), "{said}");
+    let wrong = shader(
+        &own,
+        "wrong.frag",
+        &RIGHT.replace("max(dot(normalize(n), toLight), 0.0)", "abs(dot(normalize(n), toLight))"),
+    );
+    let (code, said, _) = check(&[&wrong.display().to_string(), &right.display().to_string()]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("✗ incidence-of-both-sides") && said.contains("2 files, 2 steps, 1 wrong"), "{said}");
+    let none = shader(&own, "none.frag", "void main() {\n  gl_FragColor = vec4(1.0);\n}\n");
+    let (code, said, _) = check(&[&none.display().to_string()]);
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("no step that is known"), "{said}");
+}
+
+#[test]
+fn a_file_that_is_not_read_is_told_and_the_others_go_on() {
+    let own = folder("check-unread");
+    let right = shader(&own, "right.frag", RIGHT);
+    let deep = shader(
+        &own,
+        "deep.frag",
+        &format!("void main() {{\n  float x = {}1.0{};\n}}\n", "(".repeat(9999), ")".repeat(9999)),
+    );
+    let grows: String = (1..60).map(|k| format!("#define M{k} M{0} M{0} M{0} M{0}\n", k - 1)).collect();
+    let grows = shader(&own, "grows.frag", &format!("#define M0 + 1.0\n{grows}void main() {{ float x = 0.0 M59; }}\n"));
+    let files = [&right, &deep, &grows].map(|path| path.display().to_string());
+    let given: Vec<&str> = files.iter().map(|path| &**path).chain(["/does/not/exist.frag"]).collect();
+    let (code, said, _) = check(&given);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("deep.frag:2: it nests more than"), "{said}");
+    assert!(said.contains("grows.frag: ") && said.contains("exist.frag: cannot read"), "{said}");
+    assert!(said.contains("4  lambert") && said.contains("4 files, 1 step, 3 not read"), "{said}");
+}
+
+#[test]
+fn the_json_is_a_report_with_shaders() {
+    let own = folder("check-json");
+    let right = shader(&own, "right.frag", RIGHT);
+    let (code, said, _) = check(&[&right.display().to_string(), "--format", "json"]);
+    assert_eq!(code, 0);
+    let report: Value = serde_json::from_str(&said).expect("it is JSON");
+    assert_eq!(report["schema"], "lightmeter.report/2");
+    let step = &report["shaders"][0]["steps"][0];
+    assert_eq!((&step["line"], &step["kind"], &step["verdict"]), (&4.into(), &"lambert".into(), &"right".into()));
+}
+
+#[test]
+fn folders_and_globs_are_the_shaders_in_them() {
+    let own = folder("check-folder");
+    let first = shader(&own, "a.frag", RIGHT);
+    shader(&own, "below/b.fs", RIGHT);
+    shader(&own, "notes.txt", "no shader");
+    assert_eq!(first.parent(), Some(&*own));
+    let folder = own.display().to_string();
+    let (code, said, _) = check(&[&folder]);
+    assert!(code == 0 && said.contains("2 files, 2 steps"), "{said}");
+    let (code, said, _) = check(&[&format!("{folder}/*.frag")]);
+    assert!(code == 0 && said.contains("a.frag: GLSL, 1 step") && !said.contains("b.fs"), "{said}");
+    let (code, _, said) = check(&[&format!("{folder}/*.wgsl")]);
+    assert!(code == 2 && said.contains("no file is called so"), "{said}");
+    let (code, _, said) = check(&[&folder, "-I", "/does/not/exist"]);
+    assert!(code == 2 && said.contains("there is no such folder"), "{said}");
+    let (code, _, said) = check(&[&folder, "-D", "3=4"]);
+    assert!(code == 2 && said.contains("`3=4` is no macro"), "{said}");
+}
