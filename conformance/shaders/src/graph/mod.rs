@@ -2,7 +2,7 @@
 //!
 //! A value that is computed twice is one node. So that it is, constructors bring what they are given into one form: `-x` is drawn outwards,
 //! `v·v` is `|v|²`, `v/|v|` is `normalize(v)`, a difference of vectors has one direction, a swizzle is pushed to what it reads. Where a value is
-//! computed, and under which conditions, stands beside its node ([`Occurrence`]), since two branches may compute the same.
+//! computed, and under which conditions, stands beside its node (`Occurrence`), since two branches may compute the same.
 
 mod build;
 mod evaluate;

@@ -224,7 +224,10 @@ fn stage_of(text: &str, by_ending: ShaderStage) -> ShaderStage {
 /// What only a host's language has is taken off.
 fn mended(own: &Lines, notes: &mut Vec<String>) -> Lines {
     let mut found = Lines::default();
-    let wrapper = own.text.find("STRINGIFY").and_then(|at| Some((at, own.text[at..].find('(')? + at)));
+    let wrapper = ["STRINGIFY", "R\"(", "R\"glsl("].iter().find_map(|word| {
+        let at = own.text.find(word)?;
+        Some((at, own.text[at..].find('(')? + at))
+    });
     let wrapper_end = wrapper.and_then(|(_, open)| own.text[open..].rfind(')').map(|end| end + open));
     let mut at = 0;
     for (line, number) in own.iter() {
@@ -466,6 +469,45 @@ fn hlsl_entries(text: &str) -> Vec<(String, bool)> {
     found
 }
 
+/// Textures and samplers of Direct3D 9 as those of 10.
+fn of_direct3d_9(own: &Lines) -> Lines {
+    const SAMPLERS: [&str; 6] = ["sampler", "sampler2D", "samplerCUBE", "sampler3D", "sampler1D", "Sampler2D"];
+    let mut found = Lines::default();
+    let is_old =
+        words(&own.text).any(|own| matches!(own, "tex2D" | "texCUBE" | "tex2Dlod" | "tex2Dproj" | "sampler_state"));
+    if !is_old {
+        return own.clone();
+    }
+    found.push_all(
+        "#define tex2D(s, at) s##_map.Sample(s, (at).xy)\n#define tex2Dlod(s, at) s##_map.SampleLevel(s, (at).xy, (at).w)\n\
+         #define tex2Dproj(s, at) s##_map.Sample(s, (at).xy / (at).w)\n#define texCUBE(s, at) s##_map.Sample(s, (at).xyz)",
+    );
+    // Whether a sampler's state is being read, which stands in braces.
+    let (mut is_state, mut depth) = (false, 0_i32);
+    for (line, number) in own.iter() {
+        let code = line.split("//").next().unwrap_or_default();
+        let all: Vec<&str> = words(code).collect();
+        let is_call = code.contains('(') && !code.contains("register");
+        let mut kept = line.to_owned();
+        match all.first() {
+            _ if is_state => kept = String::new(),
+            Some(&("texture" | "Texture" | "texture2D")) if all.len() >= 2 && !is_call => kept = String::new(),
+            Some(word) if SAMPLERS.contains(word) && all.len() >= 2 && !is_call => {
+                let kind = if *word == "samplerCUBE" { "TextureCube" } else { "Texture2D" };
+                kept = format!("{kind} {0}_map; SamplerState {0};", all[1]);
+                is_state = !code.contains(';') || code.contains('{');
+            }
+            _ => {}
+        }
+        if is_state {
+            depth += code.chars().map(|c| i32::from(c == '{') - i32::from(c == '}')).sum::<i32>();
+            is_state = !(depth == 0 && code.contains(['}', ';']));
+        }
+        found.push(&kept, number);
+    }
+    found
+}
+
 /// The place of the bracket that a text's last closes.
 fn opening(text: &str) -> Option<usize> {
     let mut depth = 1;
@@ -490,7 +532,7 @@ fn of_hlsl(path: &Path, own: &Lines, options: &ReadOptions) -> Result<Vec<Shader
         return Err(ShaderError::Language { path: path.into(), message });
     }
     let mut notes = vec![];
-    let included = mended(&macros::included(own, options, &mut notes), &mut notes);
+    let included = of_direct3d_9(&mended(&macros::included(own, options, &mut notes), &mut notes));
     let mut text = Lines::default();
     options.defines.iter().for_each(|(name, value)| text.push_all(&format!("#define {name} {value}")));
     let mut is_technique = false;

@@ -5,7 +5,7 @@ use super::role::Role;
 use super::site::Way;
 use crate::graph::{Binary, Function, NodeId, Op, Origin, Type};
 use crate::templates::Worth;
-use crate::unify::{Match, Template};
+use crate::unify::{Length, Match, Template};
 
 /// Powers that are taken to encode, or to decode.
 const GAMMAS: [f64; 3] = [2.2, 2.4, 2.0];
@@ -34,8 +34,10 @@ impl Review<'_> {
             "mix" => return self.is_fog_mix(id, get("amount")?).then(|| "fog-mix".into()),
             "gamma" => {
                 let power = self.graph.number_of(get("power")?)?;
-                let is = |own: f64| GAMMAS.iter().any(|gamma| (own - gamma).abs() < 0.01);
-                (is(power) || power < 1.0 && is(1.0 / power)) && self.is_color(id)
+                let power = if power < 1.0 { 1.0 / power } else { power };
+                let is_usual = GAMMAS.iter().any(|gamma| (power - gamma).abs() < 0.01);
+                let is_vector = matches!(self.graph.ty(id), Type::Float(3 | 4));
+                is_usual && self.is_color(id) || is_vector && (1.3..2.7).contains(&power)
             }
             "normal-transform" => {
                 let normal = get("normal")?;
@@ -67,7 +69,7 @@ impl Review<'_> {
         std::iter::once(id).chain(negated).any(|own| self.users(own).iter().any(holds))
     }
 
-    fn is_lambert(&self, id: NodeId, own: &Match, template: &Template, way: &Way) -> bool {
+    fn is_lambert(&mut self, id: NodeId, own: &Match, template: &Template, way: &Way) -> bool {
         let (Some(a), Some(b)) = (self.bound(own, "n"), self.bound(own, "l")) else { return false };
         let roles = [self.named(a), self.named(b)];
         let has = |role: Role| roles.contains(&role);
@@ -96,14 +98,16 @@ impl Review<'_> {
         if known == Some(true) {
             return true;
         }
+        // A mistake is claimed of vectors alone that are what their names say.
+        let is_mistake = template.head.worth == Worth::Mistake;
         if self.graph.constant_of(a).is_some() || self.graph.constant_of(b).is_some() {
-            return has(Role::Normal);
+            return has(Role::Normal) && !is_mistake;
         }
         let is_light = has(Role::Light) && !has(Role::Eye) && roles != [Role::Light, Role::Light];
         let is_normal = has(Role::Normal) && !has(Role::Eye) && roles != [Role::Normal, Role::Normal];
-        // A mistake is claimed of vectors alone that are what their names say.
-        let is_mistake = template.head.worth == Worth::Mistake;
-        named || !is_mistake && (is_light || is_normal || roles == [Role::Unknown, Role::Unknown])
+        // Of vectors of which nothing is known, unit vectors alone are taken for a normal and a light.
+        let is_plain = !own.bound.iter().any(|bound| bound.by_length && self.finder.length(bound.id) != Length::One);
+        named || !is_mistake && (is_light || is_normal || roles == [Role::Unknown, Role::Unknown] && is_plain)
     }
 
     /// The power of a cosine by what its vectors are.
@@ -170,7 +174,7 @@ impl Review<'_> {
     fn is_fog_mix(&self, id: NodeId, amount: NodeId) -> bool {
         let below = self.graph.all_of(amount);
         below.iter().any(|own| self.sites.get(own).is_some_and(|site| site.kind == "fog"))
-            || self.lower_names(id).contains("fog")
+            || ["fog", "visib", "haze", "mist"].iter().any(|word| self.lower_names(id).contains(word))
             || below.iter().any(|own| {
                 matches!(self.graph.op(*own), Op::Call(Function::Exp | Function::Exp2, _))
                     && self.graph.all_of(*own).iter().any(|inner| self.finder.distance(*inner) > 4)
@@ -228,7 +232,8 @@ impl Review<'_> {
         let has_axis = [l, axis].iter().any(|own| self.named(*own) == Role::Axis);
         if template.head.is_weak {
             let cut = self.bound(own, "cut");
-            return (is_cone || has_axis) && cut.is_none_or(|cut| !self.graph.is_number(cut, 0.0));
+            let is_named = ["cutoff", "spot", "cone"].iter().any(|word| text.contains(word));
+            return (is_named || has_axis) && cut.is_none_or(|cut| !self.graph.is_number(cut, 0.0));
         }
         let mirrored = [l, axis].iter().any(|own| matches!(self.named(*own), Role::Half | Role::Mirrored));
         !mirrored && (is_cone || has_axis || text.contains("light"))

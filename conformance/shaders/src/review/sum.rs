@@ -1,6 +1,7 @@
 //! What multiplies what: an output as a sum of products of steps.
 
 use super::Review;
+use super::site::Site;
 use crate::graph::{Binary, Function, NodeId, Op, Origin, Type};
 use crate::lower::Root;
 use lightmeter_document::report::{ShaderStep, ShaderSum, StepVerdict};
@@ -112,12 +113,20 @@ impl Review<'_> {
         }
     }
 
+    /// Whether a colour is decoded: that is done with what comes in.
+    fn decodes(&self, site: &Site) -> bool {
+        let template = self.finder.template(&site.matched);
+        let power = template.parameters.iter().zip(&site.matched.bound).find(|(own, _)| own.0 == "power");
+        let is_above_one = power.is_some_and(|(_, own)| self.graph.number_of(own.id).is_some_and(|own| own > 1.0));
+        template.head.name == "decode" || is_above_one
+    }
+
     /// What is done with a sum, from the output inwards, and the sum.
     fn peeled(&self, value: NodeId) -> (NodeId, Vec<NodeId>) {
         let (mut own, mut through) = (value, vec![]);
         loop {
             let next = match self.sites.get(&own) {
-                Some(site) if matches!(&*site.kind, "gamma" | "tone" | "srgb" | "fog-mix") => {
+                Some(site) if matches!(&*site.kind, "gamma" | "tone" | "srgb" | "fog-mix") && !self.decodes(site) => {
                     through.push(own);
                     let template = self.finder.template(&site.matched);
                     let colors = template.parameters.iter().zip(&site.matched.bound);
@@ -302,6 +311,8 @@ impl Review<'_> {
                 let name = crate::read::shown(&leaf.name);
                 // What is only handed on may be set wherever it matters.
                 let (verdict, line) = match self.first_use(own) {
+                    // Parts of a structure may be set wherever they matter.
+                    Some(line) if name.contains(['.', '[']) => (StepVerdict::Perhaps, line),
                     Some(line) => (StepVerdict::Mistake, line),
                     None if name.split('.').next() == output.name.split('.').next() => continue,
                     None => (StepVerdict::Perhaps, self.graph.line(output.value)),

@@ -48,7 +48,7 @@ fn normal_by_part_transposed(m: mat4x4f, normal: vec3f) -> vec3f { return normal
 fn normal_moved(m: mat4x4f, normal: vec3f) -> vec3f { return (m * vec4f(normal, 1.0)).xyz; }
 //@ normal-transform mistake normal-with-translation: the normal is multiplied as (n, 1) and normalised as four components
 fn normal_moved_normalised(m: mat4x4f, normal: vec3f) -> vec3f { return normalize(m * vec4f(normal, 1.0)).xyz; }
-//@ normal-transform mistake normalised-with-w: the normal is normalised as four components
+//@ normal-transform right normalised-with-w: the normal is normalised as four components, of which the last is 0 where the matrix is affine
 fn normal_normalised_with_w(m: mat4x4f, normal: vec3f) -> vec3f { return normalize(m * vec4f(normal, 0.0)).xyz; }
 //@ normal-transform right: the normal by a 3×3 matrix
 fn normal_by_matrix(m: mat3x3f, normal: vec3f) -> vec3f { return m * normal; }
