@@ -74,6 +74,11 @@ const QUOTATIONS: &[Quotation] = &[
     of("docs/book/my-shader.md", "✓  blend   rgba32float", &["run", "--blend", "glBlendFunc(GL_SRC_ALPHA, GL_ONE)"]),
     of(
         "docs/shaders.md",
+        "conformance/examples/shaders/mistakes/half-vector-mean.frag: GLSL",
+        &["check", "conformance/examples/shaders/mistakes/half-vector-mean.frag"],
+    ),
+    of(
+        "docs/shaders.md",
         "half-vector-mean.frag is judged as",
         &["run", "lighting/blinn", "--shader", "conformance/examples/shaders/mistakes/half-vector-mean.frag"],
     ),

@@ -3,13 +3,13 @@
 use lightmeter_document::report::{ShaderReview, StepVerdict};
 use lightmeter_shaders::Reviewer;
 use lightmeter_shaders::read::ReadOptions;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 static REVIEWER: LazyLock<Reviewer> = LazyLock::new(|| Reviewer::new().expect("the forms are read"));
 
 fn file(name: &str, text: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("lightmeter-steps-{}", std::process::id()));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("steps-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for the test");
     let path = folder.join(name);
     std::fs::write(&path, text).expect("the folder can be written to");

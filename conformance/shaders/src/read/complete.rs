@@ -254,8 +254,6 @@ fn mended(own: &Lines, notes: &mut Vec<String>) -> Lines {
     for (host, word) in [("IN", "in"), ("OUT", "out")] {
         let begins = |line: &str| line.trim_start().strip_prefix(host).is_some_and(|rest| rest.starts_with(' '));
         if found.text.lines().any(begins) && !found.text.contains(&format!("define {host}")) {
-            let mut defined = Lines::default();
-            defined.push(&format!("#define {host} {word}"), 0);
             let mut with = Lines::default();
             for (line, number) in found.iter() {
                 let rest = line.trim_start().strip_prefix(host).filter(|rest| rest.starts_with(' '));
@@ -413,7 +411,8 @@ fn by_glslang(text: &str, stage: ShaderStage) -> Result<ByGlslang, Unread> {
 }
 
 fn glslang_said(said: &str, before: usize) -> Unread {
-    let first = said.lines().find(|line| line.starts_with("ERROR")).unwrap_or("glslangValidator does not read it");
+    // Where nothing is called an error, what it says first is why it did not begin.
+    let first = said.lines().find(|line| line.starts_with("ERROR")).or_else(|| said.lines().next()).unwrap_or_default();
     let name = first.split('\'').nth(1).unwrap_or_default().to_owned();
     if first.contains("undeclared identifier") {
         return Unread::Variable(name);

@@ -63,7 +63,7 @@ pub(crate) struct Finder<'a> {
     cuts: Cuts,
     known: HashMap<NodeId, Option<Match>>,
     lengths: HashMap<NodeId, Length>,
-    /// What is computed below each node: how many operations.
+    /// Kept from one evaluation to the next.
     buffer: Vec<Value<f64>>,
 }
 

@@ -6,6 +6,7 @@ mod worker;
 
 pub(crate) use worker::Worker;
 
+use super::clock::now;
 use super::options::Format;
 use super::progress::Bar;
 use super::{Status, command, writable};
@@ -63,6 +64,7 @@ impl Check {
         if let Some(folder) = self.read.include.iter().find(|folder| !folder.is_dir()) {
             anyhow::bail!("`-I {}`: there is no such folder", folder.display());
         }
+        let start = std::time::Instant::now();
         let files = files::all(&self.files)?;
         let mut bar = Bar::new(Some(files.len() as u64), "files");
         let shaders = worker::reviews(&files, &self.read, &mut bar)?;
@@ -72,7 +74,8 @@ impl Check {
             Format::Text => lines(&told::told(&shaders)).into_owned(),
             Format::Json => {
                 let empty = Report::empty(0, "wgsl".into(), vec![], vec![]);
-                Report { command: Some(command()), shaders, ..empty }.to_json()?
+                let seconds = start.elapsed().as_secs_f64();
+                Report { command: Some(command()), made_at: now(), seconds, shaders, ..empty }.to_json()?
             }
         };
         self.format.emit(&text, self.out.as_deref())?;
