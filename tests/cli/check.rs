@@ -1,9 +1,11 @@
 //! `lightmeter check`: shaders step by step.
 
-use super::{code, lightmeter, stderr, stdout};
+use super::{code, command, lightmeter, stderr, stdout};
 use crate::place::folder;
+use crate::skip::lacks;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 const RIGHT: &str = "varying vec3 n;\nuniform vec3 toLight;\nvoid main() {\n  gl_FragColor = vec4(max(dot(normalize(n), toLight), 0.0));\n}\n";
 
@@ -90,4 +92,56 @@ fn folders_and_globs_are_the_shaders_in_them() {
     assert!(code == 2 && said.contains("there is no such folder"), "{said}");
     let (code, _, said) = check(&[&folder, "-D", "3=4"]);
     assert!(code == 2 && said.contains("`3=4` is no macro"), "{said}");
+}
+
+const HLSL: &str = "float3 lightPosition;
+float4 main(float3 normal : NORMAL, float3 position : TEXCOORD0) : SV_Target {
+  float3 l = normalize(lightPosition - position);
+  return saturate(dot(normalize(normal), l));
+}
+";
+
+#[test]
+fn hlsl_is_read_by_glslang_with_the_lines_of_the_file() {
+    let is_there = Command::new("glslangValidator").arg("--version").output().is_ok();
+    if lacks(!is_there, ("glslang", "needs glslangValidator (Debian: apt-get install glslang-tools)")) {
+        return;
+    }
+    let path = shader(&folder("check-hlsl"), "lit.hlsl", HLSL);
+    let (code, said, _) = check(&[&path.display().to_string()]);
+    assert!(code == 0 && said.contains("HLSL (read by glslangValidator, through SPIR-V), 1 step"), "{said}");
+    assert!(said.contains("    4  lambert  return saturate("), "{said}");
+}
+
+/// What is asked of compilers that are seldom installed: stand-ins record it.
+#[cfg(unix)]
+#[test]
+fn other_compilers_are_asked_for_the_entry_point_and_its_stage() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let rows = [
+        ("dxc", "-spirv -fspv-debug=line -T ps_6_0 -E main -Fo"),
+        ("slangc", "-target spirv -g -stage fragment -entry main -o"),
+    ];
+    for (name, expected) in rows {
+        let own = folder("check-compilers");
+        let path = shader(&own, "lit.hlsl", HLSL);
+        let (asked, programs) = (own.join("asked"), own.join("programs"));
+        let program =
+            shader(&programs, name, &format!("#!/bin/sh\necho \"$@\" >'{}'\necho 'ERROR: no'\n", asked.display()));
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).expect("it can be made a program");
+        let mut asking = command(&["check", &path.display().to_string()]);
+        let output = asking.env("PATH", &programs).output().expect("the binary starts");
+        assert_eq!(code(&output), 2, "{}", stdout(&output));
+        let asked = std::fs::read_to_string(&asked).expect("it was asked");
+        assert!(asked.starts_with(expected), "{name}: {asked}");
+    }
+    let own = folder("check-no-compiler");
+    let path = shader(&own, "lit.hlsl", HLSL);
+    let mut asking = command(&["check", &path.display().to_string()]);
+    let output = asking.env("PATH", &own).output().expect("the binary starts");
+    let said = stdout(&output);
+    assert!(
+        code(&output) == 2 && said.contains("read by glslangValidator, dxc or slangc, and none is installed"),
+        "{said}"
+    );
 }
