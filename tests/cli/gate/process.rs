@@ -208,7 +208,8 @@ fn a_renderer_that_answers_without_reading_is_told() {
     let answers = (0..4000).map(|k| format!("{{\"id\":\"fog/exp/random/{k:06}\",\"value\":[0,0,0,0]}}\n"));
     let file = folder.join("answers.jsonl");
     std::fs::write(&file, hello.to_owned() + &answers.collect::<String>()).expect("it can be written");
-    let exec = format!("cat '{}'; {PASSES}; sleep 600", text(&file));
+    // Time goes on passing: the first of it may be heard before the pipe is full.
+    let exec = format!("cat '{}'; while {PASSES}; do sleep 0.1; done", text(&file));
     let args = ["gate", "--exec", &exec, "--format", "json", "--cases", "4000", "fog/exp/random"];
     let (status, found) = report(&lightmeter(&args));
     assert!(
