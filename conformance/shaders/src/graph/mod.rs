@@ -6,6 +6,8 @@
 
 mod build;
 mod evaluate;
+#[cfg(test)]
+mod tests;
 mod text;
 mod value;
 mod vector;
