@@ -30,6 +30,7 @@ const ALLOWED: &[(&str, &str, &str)] = &[
     ("cli/gate/ending.rs", "\"--timeout\", \"0.5\"", "by the renderer's clock"),
     ("cli/gate/process.rs", "sleep 600", "a process that never answers and is ended"),
     ("cli/gate/process.rs", "\"--case-timeout\", \"1\"", "by the renderer's clock"),
+    ("cli/gate/process.rs", "sleep 0.1", "between two ticks of the renderer's clock, in a process that is ended"),
     ("cli/hostile.rs", "Command::new(\"timeout\")", "ends a test that waits in vain"),
     ("cli/hostile.rs", "timeout 300", "the same"),
     ("cli/hostile.rs", "\"--timeout\", \"2\"", "by the renderer's clock"),

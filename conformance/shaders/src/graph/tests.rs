@@ -25,6 +25,12 @@ fn what_is_the_same_is_one_node() {
     assert_eq!(graph.binary(Binary::Multiply, a, reciprocal), normal);
     let square = graph.call(Function::Dot, smallvec![a, a]);
     assert_eq!(graph.call(Function::Sqrt, smallvec![square]), length);
+    // x·m is m·x, and a + b is b + a.
+    let y = graph.swizzle(b, &[0]);
+    for of in [Binary::Multiply, Binary::Add] {
+        assert_eq!(graph.binary(of, x, y), graph.binary(of, y, x), "{of:?}");
+        assert_eq!(graph.binary(of, a, b), graph.binary(of, b, a), "{of:?}");
+    }
     // −a·b, and b·(−a).
     let turned = graph.negate(a);
     let dots = [graph.call(Function::Dot, smallvec![turned, b]), graph.call(Function::Dot, smallvec![b, turned])];
