@@ -23,6 +23,10 @@ fn review(name: &str, text: &str) -> ShaderReview {
 
 /// `line kind verdict name` of each step.
 fn steps(name: &str, text: &str) -> Vec<String> {
+    steps_of(&review(name, text))
+}
+
+fn steps_of(found: &ShaderReview) -> Vec<String> {
     let word = |verdict: StepVerdict| match verdict {
         StepVerdict::Right => "right",
         StepVerdict::Dialect => "dialect",
@@ -32,7 +36,7 @@ fn steps(name: &str, text: &str) -> Vec<String> {
     let told = |step: &lightmeter_document::report::ShaderStep| {
         format!("{} {} {} {}", step.line, step.kind, word(step.verdict), step.name).trim_end().to_owned()
     };
-    review(name, text).steps.iter().map(told).collect()
+    found.steps.iter().map(told).collect()
 }
 
 const HEAD: &str = "#version 330 core
@@ -222,6 +226,70 @@ fn what_is_not_there_is_stubbed_and_said() {
     assert_eq!(found.steps[0].line, 5);
     assert!(found.notes.iter().any(|note| note.contains("missing.h") && note.contains("-I DIR")), "{:?}", found.notes);
     assert!(found.notes.iter().any(|note| note.contains("`albedo` is not declared")), "{:?}", found.notes);
+}
+
+#[test]
+fn types_that_are_declared_nowhere_are_structures_of_what_is_asked_of_them() {
+    let text = "vec3 lit(vec3 n, LightData light, float visibility) {\n  vec3 l = normalize(light.position.xyz - getPoint(n, 1.0).xyz);\n  return light.colors[0].rgb * scene.exposure * max(dot(normalize(n), l), 0.0);\n}\n";
+    let found = review("type.glsl", text);
+    let steps: Vec<(u32, &str)> = found.steps.iter().map(|step| (step.line, &*step.kind)).collect();
+    assert_eq!(steps, [(3, "lambert")], "{found:?}");
+    let notes = found.notes.join("; ");
+    assert!(
+        notes.contains("the type `LightData` is declared nowhere") && notes.contains("`position`, `colors`"),
+        "{notes}"
+    );
+    assert!(notes.contains("`scene` is not declared: taken as a structure"), "{notes}");
+    assert!(notes.contains("the function `getPoint` is not there: what it gives is taken as a vec3"), "{notes}");
+    let wgsl = "#import host::types\n@fragment fn main(input: host::Input) -> @location(0) vec4f {\n  let l = normalize(light.position.xyz - input.world);\n  return vec4f(light.color.rgb * max(dot(normalize(input.normal), l), 0.0), 1.0);\n}\n";
+    assert_eq!(steps_of(&review("type.wgsl", wgsl)), ["4 lambert right"]);
+}
+
+#[test]
+fn what_nobody_reads_is_left_out_and_said_and_no_term_is_missed_then() {
+    let text = "varying vec3 normal;\nuniform vec3 toLight;\nvoid odd() {\n  int a[3] = @;\n}\nvoid main() {\n  vec3 color = ### 1;\n  gl_FragColor = vec4(color * max(dot(normalize(normal), toLight), 0.0), 1.0);\n}\n";
+    let found = review("odd.fs", text);
+    assert_eq!(steps_of(&found), ["8 lambert right"]);
+    assert!(found.notes.iter().any(|note| note.starts_with("line 7 is not read")), "{:?}", found.notes);
+    // The statement that is left out might be what is missing.
+    let unset = |odd: &str| {
+        let text = format!(
+            "varying vec3 normal;\nuniform vec3 toLight;\nvoid main() {{\n  vec3 sum;\n  {odd}\n  sum += vec3(max(dot(normalize(normal), toLight), 0.0));\n  gl_FragColor = vec4(sum, 1.0);\n}}\n"
+        );
+        steps_of(&review("unset.fs", &text)).join(", ")
+    };
+    assert!(unset("").contains("value mistake"), "{}", unset(""));
+    assert!(unset("sum ??= 1;").contains("value perhaps"), "{}", unset("sum ??= 1;"));
+}
+
+#[test]
+fn shaders_are_read_as_hosts_wrap_them() {
+    let lit = "gl_FragColor = vec4(max(dot(normalize(normal), toLight), 0.0));";
+    let head = "varying vec3 normal;\nuniform vec3 toLight;\n";
+    let sections = format!(
+        "#shader vertex\nattribute vec4 at;\nvoid main() {{ gl_Position = at; }}\n#shader fragment\n{head}void main() {{\n  {lit}\n}}\n"
+    );
+    assert_eq!(steps("sections.glsl", &sections), ["8 lambert right"]);
+    let strings = format!(
+        "const char* a = R\"(\nattribute vec4 at;\nvoid main() {{ gl_Position = at; }}\n)\";\nconst char* b = R\"x(\n{head}void main() {{\n  {lit}\n}}\n)x\";\n"
+    );
+    assert_eq!(steps("strings.glsl", &strings), ["9 lambert right"]);
+    let switched = format!(
+        "{head}#ifdef VERTEX_SHADER\nattribute vec4 at;\nvoid main() {{ gl_Position = at; }}\n#endif\n#ifdef FRAGMENT_SHADER\nvoid main() {{\n  {lit}\n}}\n#endif\n"
+    );
+    assert_eq!(steps("switched.glsl", &switched), ["9 lambert right"]);
+    let godot = "shader_type spatial;\nuniform vec3 normal_of : hint_normal;\nuniform vec3 sun = vec3(0.0, 1.0, 0.0);\nvoid fragment() {\n  ALBEDO = vec3(max(dot(normalize(normal_of), normalize(sun)), 0.0));\n}\n";
+    assert_eq!(steps("godot.glsl", godot), ["5 lambert right"]);
+}
+
+#[test]
+fn what_is_not_used_is_told_so_and_what_ends_a_turn_is_read() {
+    let text = "varying vec3 normal;\nuniform vec3 toLight;\nvoid main() {\n  float lit = max(dot(normalize(normal), toLight), 0.0);\n  gl_FragColor = vec4(1.0);\n}\n";
+    let found = review("unused.fs", text);
+    assert_eq!(steps_of(&found), ["4 lambert right"]);
+    assert!(found.steps[0].sentence.ends_with("what it gives is not used"), "{found:?}");
+    let turn = "@fragment fn main(@location(0) normal: vec3f, @location(1) toLight: vec3f) -> @location(0) vec4f {\n  var sum = 0.0;\n  var i = 0;\n  loop {\n    if (i >= 4) { break; }\n    continuing {\n      sum += max(dot(normalize(normal), normalize(toLight)), 0.0);\n      i++;\n    }\n  }\n  return vec4f(sum);\n}\n";
+    assert_eq!(steps("turn.wgsl", turn), ["7 lambert right"]);
 }
 
 #[test]

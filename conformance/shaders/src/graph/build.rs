@@ -29,13 +29,13 @@ impl Graph {
 
     /// A value that is not computed. Of one name and type there is one.
     pub fn leaf(&mut self, name: &str, ty: Type, origin: Origin) -> NodeId {
-        if let Some(&id) = self.named.get(&(name.to_owned(), ty)) {
+        if let Some(&id) = self.named.get(&(name.to_owned(), ty, origin)) {
             return id;
         }
         let number = u32::try_from(self.leaves.len()).unwrap_or(u32::MAX);
         self.leaves.push(GraphLeaf { name: name.into(), origin });
         let id = self.node(Op::Leaf(number), ty);
-        self.named.insert((name.to_owned(), ty), id);
+        self.named.insert((name.to_owned(), ty, origin), id);
         id
     }
 

@@ -258,7 +258,7 @@ pub struct Graph {
     nodes: Vec<Node>,
     known: HashMap<(Op, Type), NodeId>,
     leaves: Vec<GraphLeaf>,
-    named: HashMap<(String, Type), NodeId>,
+    named: HashMap<(String, Type, Origin), NodeId>,
     /// The place that is being read.
     pub(crate) line: u32,
     /// The conditions of the branch that is being read.
@@ -303,7 +303,7 @@ impl Graph {
     /// The first line that computes a value; 0 where none is known.
     #[must_use]
     pub fn line(&self, id: NodeId) -> u32 {
-        self.occurrences(id).first().map_or(0, |place| place.line)
+        self.occurrences(id).iter().map(|place| place.line).find(|line| *line > 0).unwrap_or(0)
     }
 
     /// What a leaf is.

@@ -134,6 +134,11 @@ impl<'a> Lowering<'a> {
             Expression::Swizzle { size, vector, pattern } => {
                 let vector = self.value(frame, state, *vector);
                 let pattern: Vec<u8> = pattern[..*size as usize].iter().map(|own| *own as u8).collect();
+                // naga's reader of GLSL lets this pass where a name hides another.
+                let length = self.graph.ty(vector).length();
+                if pattern.iter().any(|own| usize::from(*own) >= length) {
+                    return Symbol::Value(self.opaque("components", vector));
+                }
                 self.graph.line = line;
                 Symbol::Value(self.graph.swizzle(vector, &pattern))
             }

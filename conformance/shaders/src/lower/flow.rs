@@ -60,13 +60,15 @@ impl<'a> Lowering<'a> {
                     let flow = flow.ends(&|end| if matches!(end, End::Break) { End::Normal } else { end });
                     return self.go_on(flow, frame, rest);
                 }
-                Statement::Loop { body: inner, .. } => {
+                Statement::Loop { body: inner, continuing, .. } => {
                     self.has_loops = true;
                     self.loops += 1;
                     let flow = self.block(frame, state, inner).without_guards();
+                    let flow = flow.ends(&|end| if matches!(end, End::Continue) { End::Normal } else { end });
+                    let flow = self.go_on(flow, frame, continuing);
+                    let flow = self.go_on(flow, frame, &inner[..head(inner)]);
                     self.loops -= 1;
-                    let flow =
-                        flow.ends(&|end| if matches!(end, End::Break | End::Continue) { End::Normal } else { end });
+                    let flow = flow.ends(&|end| if matches!(end, End::Break) { End::Normal } else { end });
                     return self.go_on(flow, frame, rest);
                 }
                 Statement::Break => return Flow::End(End::Break, state),
@@ -214,6 +216,16 @@ impl<'a> Lowering<'a> {
                 (yes, no) => yes.or(no),
             },
         }
+    }
+}
+
+/// How many statements of a loop's body the next turn's head has, where an optimiser left all else of the turn to what ends it.
+fn head(body: &[Statement]) -> usize {
+    let head = body.iter().take_while(|own| matches!(own, Statement::Emit(_) | Statement::Store { .. })).count();
+    let leaves = |block: &[Statement]| matches!(block, [] | [Statement::Break | Statement::Continue]);
+    match &body[head..] {
+        [Statement::If { accept, reject, .. }] if leaves(accept) && leaves(reject) => head,
+        _ => 0,
     }
 }
 

@@ -8,7 +8,7 @@ mod flow;
 mod memory;
 mod root;
 
-pub(crate) use root::Root;
+pub(crate) use root::{Output, Root};
 
 use crate::graph::{Graph, NodeId, Origin, Type};
 use memory::Pointer;

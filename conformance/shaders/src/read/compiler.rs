@@ -81,7 +81,8 @@ fn arguments(compiler: Compiler, source: &Source<'_>) -> Vec<String> {
                 "--keep-uncalled",
             ]);
             if source.entry.is_some() {
-                all.extend(own(&["-D", "-e", entry]));
+                // Optimised, it has fewer functions and names than its text.
+                all.extend(own(&["-D", "-Od", "-e", entry]));
             }
             all
         }

@@ -2,12 +2,13 @@
 
 use super::compiler::{self, Compiler, OF_HLSL, Source};
 use super::glsl::{self, Normalised, PRELUDE_LINES};
+use super::hosts::{self, mended};
 use super::lines::Lines;
 use super::macros::{self, Definitions, words};
-use super::missing::{Unread, repaired};
+use super::missing::{Dialect, Missing, Repaired, Unread, repaired};
 use super::options::ReadOptions;
 use super::source::{HLSL, Language, MOST_BYTES};
-use super::{Role, ShaderError, spirv};
+use super::{Role, ShaderError, spirv, wgsl};
 use crate::graph::Origin;
 use crate::lower::Declared;
 use lightmeter_files::read;
@@ -17,9 +18,9 @@ use naga::{Module, ShaderStage, Span};
 use std::path::Path;
 
 /// How many times naga reads a text, to find what is missing.
-const TURNS_OF_NAGA: usize = 60;
+const TURNS_OF_NAGA: usize = 400;
 /// The same of glslang, which is a process each time.
-const TURNS_OF_GLSLANG: usize = 12;
+const TURNS_OF_GLSLANG: usize = 40;
 
 /// A file as somebody read it, under a set of definitions.
 #[derive(Debug)]
@@ -38,6 +39,8 @@ pub struct ShaderReading {
     roles: Vec<(String, Role)>,
     is_vertex: bool,
     zeroes_locals: bool,
+    /// Whether statements that nobody reads are left out.
+    pub(crate) is_partial: bool,
     places: Places,
 }
 
@@ -111,8 +114,19 @@ pub fn readings(path: &Path, options: &ReadOptions) -> Result<Vec<ShaderReading>
         let message = format!("it nests more than {MOST_DEPTH} brackets");
         return Err(ShaderError::Invalid { path: path.into(), line: Some(line), message });
     }
+    let programs = hosts::of_shader_lab(&text);
+    if !programs.is_empty() {
+        let read = programs.iter().map(|own| of_hlsl(path, own, options));
+        let (found, errors): (Vec<_>, Vec<_>) = read.partition(Result::is_ok);
+        let found: Vec<ShaderReading> = found.into_iter().filter_map(Result::ok).flatten().collect();
+        return match errors.into_iter().find_map(Result::err) {
+            Some(error) if found.is_empty() => Err(error),
+            _ => Ok(found),
+        };
+    }
     let ending = path.extension().map(|own| own.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if HLSL.contains(&&*ending) || is_hlsl(&text.text) && !matches!(by_ending, Ok(Language::Wgsl)) {
+    let is_glsl = text.text.lines().any(|line| line.trim_start().starts_with("#version"));
+    if HLSL.contains(&&*ending) && !is_glsl || is_hlsl(&text.text) && !matches!(by_ending, Ok(Language::Wgsl)) {
         return of_hlsl(path, &text, options);
     }
     match by_ending.or_else(|error| language_of(&text.text).ok_or(error))? {
@@ -171,13 +185,42 @@ fn of_spirv(path: &Path, bytes: &[u8]) -> Result<ShaderReading, ShaderError> {
 }
 
 fn of_wgsl(path: &Path, own: Lines) -> Result<ShaderReading, ShaderError> {
-    let module = naga::front::wgsl::parse_str(&own.text).map_err(|error| ShaderError::Invalid {
-        path: path.into(),
-        line: error.location(&own.text).map(|place| place.line_number as usize),
-        message: error.message().to_owned(),
-    })?;
-    let places = Places::Text(starts(&own.text), own, 0);
-    Ok(ShaderReading { zeroes_locals: true, ..ShaderReading::new(module, "WGSL".into(), "naga".into(), places) })
+    let reading = |module: Module, lines: Lines| {
+        let places = Places::Text(starts(&lines.text), lines, 0);
+        ShaderReading { zeroes_locals: true, ..ShaderReading::new(module, "WGSL".into(), "naga".into(), places) }
+    };
+    if let Ok(module) = naga::front::wgsl::parse_str(&own.text) {
+        return Ok(reading(module, own));
+    }
+    let given = (&vec![], false);
+    let parsed = |lines: &Lines| parsed_wgsl(&lines.text);
+    match repaired(&wgsl::plain(&own), given, Dialect::Wgsl, TURNS_OF_NAGA, &parsed) {
+        Ok(Repaired { read, lines, notes, is_partial }) => {
+            Ok(ShaderReading { notes, is_partial, ..reading(read, lines) })
+        }
+        Err((line, message)) => {
+            Err(ShaderError::Invalid { path: path.into(), line: (line > 0).then_some(line as usize), message })
+        }
+    }
+}
+
+fn parsed_wgsl(text: &str) -> Result<Module, Unread> {
+    naga::front::wgsl::parse_str(text).map_err(|error| {
+        let message = error.message();
+        let place = error.location(text);
+        let line = place.map_or(0, |place| place.line_number as usize);
+        let name =
+            message.strip_prefix("no definition in scope for identifier: `").and_then(|own| own.strip_suffix('`'));
+        let what = match (name, place) {
+            (Some(name), Some(place)) => {
+                let end = (place.offset + place.length) as usize;
+                let is_called = text.get(end..).is_some_and(|rest| rest.trim_start().starts_with('('));
+                if is_called { Missing::Function(name.into()) } else { Missing::Variable(name.into()) }
+            }
+            _ => Missing::Other(message.to_owned()),
+        };
+        Unread { line, what }
+    })
 }
 
 impl ShaderReading {
@@ -193,6 +236,7 @@ impl ShaderReading {
             roles: vec![],
             is_vertex: false,
             zeroes_locals: false,
+            is_partial: false,
             places,
         }
     }
@@ -221,50 +265,6 @@ fn stage_of(text: &str, by_ending: ShaderStage) -> ShaderStage {
     by_ending
 }
 
-/// What only a host's language has is taken off.
-fn mended(own: &Lines, notes: &mut Vec<String>) -> Lines {
-    let mut found = Lines::default();
-    let wrapper = ["STRINGIFY", "R\"(", "R\"glsl("].iter().find_map(|word| {
-        let at = own.text.find(word)?;
-        Some((at, own.text[at..].find('(')? + at))
-    });
-    let wrapper_end = wrapper.and_then(|(_, open)| own.text[open..].rfind(')').map(|end| end + open));
-    let mut at = 0;
-    for (line, number) in own.iter() {
-        let mut kept = line.to_owned();
-        if let (Some((_, open)), Some(end)) = (wrapper, wrapper_end) {
-            let inside = |(k, c): (usize, char)| if at + k > open && at + k < end { c } else { ' ' };
-            kept = line.char_indices().map(inside).collect();
-        }
-        at += line.len() + 1;
-        let word = kept.trim_start();
-        if let Some(rest) = word.strip_prefix("subroutine") {
-            // `subroutine(T) vec4 f()` stays a function.
-            kept = rest
-                .trim_start()
-                .strip_prefix('(')
-                .and_then(|rest| rest.split_once(')'))
-                .map_or_else(String::new, |(_, rest)| rest.to_owned());
-        }
-        found.push(&kept, number);
-    }
-    if wrapper.is_some() {
-        notes.push("it is wrapped for another language: the wrapper is taken off".into());
-    }
-    for (host, word) in [("IN", "in"), ("OUT", "out")] {
-        let begins = |line: &str| line.trim_start().strip_prefix(host).is_some_and(|rest| rest.starts_with(' '));
-        if found.text.lines().any(begins) && !found.text.contains(&format!("define {host}")) {
-            let mut with = Lines::default();
-            for (line, number) in found.iter() {
-                let rest = line.trim_start().strip_prefix(host).filter(|rest| rest.starts_with(' '));
-                with.push(&rest.map_or_else(|| line.to_owned(), |rest| format!("{word}{rest}")), number);
-            }
-            found = with;
-        }
-    }
-    found
-}
-
 /// Whether a text is statements alone, without a function.
 fn is_statements(text: &str) -> bool {
     let code: String = text
@@ -284,6 +284,17 @@ fn of_glsl(
     by_ending: ShaderStage,
     options: &ReadOptions,
 ) -> Result<Vec<ShaderReading>, ShaderError> {
+    let sections = hosts::sections(own);
+    if !sections.is_empty() {
+        let stage = |section: &hosts::Section| section.stage.unwrap_or(by_ending);
+        let read = sections.iter().map(|section| of_glsl(path, &section.lines, stage(section), options));
+        let (found, errors): (Vec<_>, Vec<_>) = read.partition(Result::is_ok);
+        let found: Vec<ShaderReading> = found.into_iter().filter_map(Result::ok).flatten().collect();
+        return match errors.into_iter().find_map(Result::err) {
+            Some(error) if found.is_empty() => Err(error),
+            _ => Ok(found),
+        };
+    }
     let mut notes = vec![];
     let own = mended(&macros::included(own, options, &mut notes), &mut notes);
     if let Some(word) = words(&own.text).find(|word| ["EmitVertex", "gl_TessLevelOuter", "gl_TessCoord"].contains(word))
@@ -349,18 +360,14 @@ fn of_definitions(
     is_wrapped: bool,
     stage: ShaderStage,
 ) -> Result<ShaderReading, (u32, String)> {
-    let by_naga = repaired(own, definitions, is_wrapped, TURNS_OF_NAGA, &|text| parsed(&text.text, stage));
-    let said = match by_naga {
-        Ok(((module, Normalised { text, roles, has_main }), lines, notes)) => {
+    let given = (definitions, is_wrapped);
+    let read = |text: &Lines| parsed(&text.text, stage);
+    let said = match repaired(own, given, Dialect::Glsl, TURNS_OF_NAGA, &read) {
+        Ok(Repaired { read: (module, Normalised { text, roles, has_main }), lines, notes, is_partial }) => {
             let places = Places::Text(starts(&text), lines, PRELUDE_LINES);
             let own = ShaderReading::new(module, String::new(), "naga".into(), places);
-            return Ok(ShaderReading {
-                notes,
-                roles,
-                has_entry: has_main,
-                is_vertex: stage == ShaderStage::Vertex,
-                ..own
-            });
+            let is_vertex = stage == ShaderStage::Vertex;
+            return Ok(ShaderReading { notes, roles, has_entry: has_main, is_vertex, is_partial, ..own });
         }
         Err(said) => said,
     };
@@ -368,12 +375,14 @@ fn of_definitions(
         let (line, words) = said;
         return Err((line, format!("{words}; glslangValidator might read it, and is not installed")));
     }
-    let by_glslang = repaired(own, definitions, is_wrapped, TURNS_OF_GLSLANG, &|text| by_glslang(&text.text, stage));
+    let read = |text: &Lines| by_glslang(&text.text, stage);
     // What naga says is plainer, as it is of the text itself.
-    let ((module, table, roles, has_main), lines, notes) = by_glslang.map_err(|_| said)?;
+    let own = repaired(own, given, Dialect::Glsl, TURNS_OF_GLSLANG, &read).map_err(|_| said)?;
+    let Repaired { read: (module, table, roles, has_main), lines, notes, is_partial } = own;
     let places = Places::Spirv(table, lines, PRELUDE_LINES + 1);
     let reading = ShaderReading::new(module, String::new(), "glslangValidator, through SPIR-V".into(), places);
-    Ok(ShaderReading { notes, roles, has_entry: has_main, is_vertex: stage == ShaderStage::Vertex, ..reading })
+    let is_vertex = stage == ShaderStage::Vertex;
+    Ok(ShaderReading { notes, roles, has_entry: has_main, is_vertex, is_partial, ..reading })
 }
 
 fn parsed(text: &str, stage: ShaderStage) -> Result<(Module, Normalised), Unread> {
@@ -384,17 +393,18 @@ fn parsed(text: &str, stage: ShaderStage) -> Result<(Module, Normalised), Unread
     let errors = match parsed {
         Ok(Ok(module)) => return Ok((module, normalised)),
         Ok(Err(errors)) => errors,
-        Err(_) => return Err(Unread::Other(0, "naga ended while reading it".into())),
+        Err(_) => return Err(Unread::other(0, "naga ended while reading it")),
     };
-    let Some(error) = errors.errors.first() else { return Err(Unread::Other(0, errors.to_string())) };
+    let Some(error) = errors.errors.first() else { return Err(Unread::other(0, errors.to_string())) };
     let line = (error.meta.location(&normalised.text).line_number as usize).saturating_sub(PRELUDE_LINES);
-    Err(match &error.kind {
-        ErrorKind::UnknownVariable(name) if !name.starts_with("lightmeter_") => Unread::Variable(name.clone()),
+    let what = match &error.kind {
+        ErrorKind::UnknownVariable(name) if !name.starts_with("lightmeter_") => Missing::Variable(name.clone()),
         ErrorKind::SemanticError(words) if words.starts_with("Unknown function") => {
-            Unread::Function(words.split('\'').nth(1).unwrap_or_default().to_owned())
+            Missing::Function(words.split('\'').nth(1).unwrap_or_default().to_owned())
         }
-        kind => Unread::Other(line, kind.to_string()),
-    })
+        kind => Missing::Other(kind.to_string()),
+    };
+    Err(Unread { line, what })
 }
 
 type ByGlslang = (Module, spirv::Table, Vec<(String, Role)>, bool);
@@ -406,29 +416,38 @@ fn by_glslang(text: &str, stage: ShaderStage) -> Result<ByGlslang, Unread> {
     let stage = if stage == ShaderStage::Vertex { "vert" } else { "frag" };
     let bytes = compiler::compiled(Compiler::Glslang, &Source { text: &text, stage, entry: None })
         .map_err(|said| glslang_said(&said, PRELUDE_LINES + 1))?;
-    let (module, table) = spirv::read(Path::new(""), &bytes).map_err(|error| Unread::Other(0, error.to_string()))?;
+    let (module, table) = spirv::read(Path::new(""), &bytes).map_err(|error| Unread::other(0, error.to_string()))?;
     Ok((module, table, roles, has_main))
 }
 
 fn glslang_said(said: &str, before: usize) -> Unread {
     // Where nothing is called an error, what it says first is why it did not begin.
     let first = said.lines().find(|line| line.starts_with("ERROR")).or_else(|| said.lines().next()).unwrap_or_default();
-    let name = first.split('\'').nth(1).unwrap_or_default().to_owned();
-    if first.contains("undeclared identifier") {
-        return Unread::Variable(name);
-    }
-    if first.contains("no matching overloaded function found") {
-        return Unread::Function(name);
-    }
+    let name = || first.split('\'').nth(1).unwrap_or_default().to_owned();
     let mut parts = first.splitn(4, ':').skip(2);
-    let line = parts.next().and_then(|own| own.trim().parse::<usize>().ok()).unwrap_or(0);
-    let words = parts.next().unwrap_or(first).trim();
-    Unread::Other(line.saturating_sub(before), words.to_owned())
+    let line = parts.next().and_then(|own| own.trim().parse::<usize>().ok()).unwrap_or(0).saturating_sub(before);
+    let words =
+        parts.next().filter(|words| !words.trim().is_empty()).unwrap_or("its compiler ended without a word").trim();
+    let what = if first.contains("undeclared identifier") || first.contains("unknown variable") {
+        Missing::Variable(name())
+    } else if first.contains("no matching overloaded function found") {
+        Missing::Function(name())
+    } else {
+        Missing::Other(words.to_owned())
+    };
+    Unread { line, what }
 }
 
 /// Entry points of HLSL: their names, and whether each is a vertex shader's.
 fn hlsl_entries(text: &str) -> Vec<(String, bool)> {
     let mut found: Vec<(String, bool)> = vec![];
+    for (start, is_vertex) in [("#pragma fragment ", false), ("#pragma vertex ", true)] {
+        let name = text.lines().find_map(|line| words(line.trim().strip_prefix(start)?).next());
+        found.extend(name.map(|name| (name.to_owned(), is_vertex)));
+    }
+    if !found.is_empty() {
+        return found;
+    }
     let flat = text.to_lowercase();
     for (semantic, is_vertex) in [
         (": sv_target", false),
@@ -485,7 +504,8 @@ fn of_direct3d_9(own: &Lines) -> Lines {
     let (mut is_state, mut depth) = (false, 0_i32);
     for (line, number) in own.iter() {
         let code = line.split("//").next().unwrap_or_default();
-        let all: Vec<&str> = words(code).collect();
+        let is_qualifier = |word: &&str| matches!(*word, "uniform" | "static" | "shared" | "extern");
+        let all: Vec<&str> = words(code).skip_while(is_qualifier).collect();
         let is_call = code.contains('(') && !code.contains("register");
         let mut kept = line.to_owned();
         match all.first() {
@@ -533,11 +553,14 @@ fn of_hlsl(path: &Path, own: &Lines, options: &ReadOptions) -> Result<Vec<Shader
     let mut notes = vec![];
     let included = of_direct3d_9(&mended(&macros::included(own, options, &mut notes), &mut notes));
     let mut text = Lines::default();
-    options.defines.iter().for_each(|(name, value)| text.push_all(&format!("#define {name} {value}")));
+    if words(&included.text).any(|word| word == "UnityCG" || word.starts_with("UNITY_") || word.starts_with("fixed")) {
+        text.push_all(hosts::OF_UNITY);
+    }
     let mut is_technique = false;
     for (line, number) in included.iter() {
         is_technique |= line.trim_start().starts_with("technique");
-        text.push(if is_technique { "" } else { line }, number);
+        // Names of namespaces are parts of names.
+        text.push(&if is_technique { String::new() } else { line.replace("::", "_") }, number);
     }
     let entries = hlsl_entries(&text.text);
     let alone = entries.is_empty();
@@ -549,32 +572,28 @@ fn of_hlsl(path: &Path, own: &Lines, options: &ReadOptions) -> Result<Vec<Shader
     let mut unread = None;
     for (entry, is_vertex) in entries {
         let stage = if is_vertex { "vert" } else { "frag" };
-        let source = Source { text: &text.text, stage, entry: Some(&entry) };
         for own in &installed {
-            let read = compiler::compiled(*own, &source)
-                .map_err(|said| glslang_said(&said, 0))
-                .and_then(|bytes| spirv::read(path, &bytes).map_err(|error| Unread::Other(0, error.to_string())));
-            match read {
-                Ok((module, table)) => {
-                    let places = Places::Spirv(table, text.clone(), 0);
+            let read = |text: &Lines| {
+                let source = Source { text: &text.text, stage, entry: Some(&entry) };
+                let bytes = compiler::compiled(*own, &source).map_err(|said| glslang_said(&said, 0))?;
+                spirv::read(path, &bytes).map_err(|error| Unread::other(0, error.to_string()))
+            };
+            match repaired(&text, (&options.defines, false), Dialect::Hlsl, TURNS_OF_GLSLANG, &read) {
+                Ok(Repaired { read: (module, table), lines, notes: own_notes, is_partial }) => {
+                    let places = Places::Spirv(table, lines, 0);
                     let reader = format!("{}, through SPIR-V", own.name());
                     let reading = ShaderReading::new(module, "HLSL".into(), reader, places);
-                    found.push(ShaderReading { notes: notes.clone(), has_entry: !alone, is_vertex, ..reading });
+                    let notes = [&notes[..], &own_notes].concat();
+                    found.push(ShaderReading { notes, has_entry: !alone, is_vertex, is_partial, ..reading });
                     break;
                 }
-                Err(error) => {
-                    unread.get_or_insert(error);
-                }
+                Err(error) => drop(unread.get_or_insert(error)),
             }
         }
     }
     if !found.is_empty() {
         return Ok(found);
     }
-    Err(match unread {
-        Some(Unread::Other(line, words)) if line > 0 => invalid(Some(text.line(line) as usize), words),
-        Some(Unread::Other(_, words)) => invalid(None, words),
-        Some(Unread::Variable(name) | Unread::Function(name)) => invalid(None, format!("`{name}` is not declared")),
-        None => invalid(None, "it has no entry point".into()),
-    })
+    let (line, message) = unread.unwrap_or((0, "it has no entry point".into()));
+    Err(invalid((line > 0).then_some(line as usize), message))
 }

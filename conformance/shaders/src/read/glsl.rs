@@ -62,7 +62,8 @@ const HELPERS: &str = "vec4 lightmeter_texture(vec4 t, vec2 at) { return t; } ve
     vec4 lightmeter_texture(vec4 t, vec2 at, ivec2 by) { return t; } vec4 lightmeter_texture(vec4 t, vec2 at, vec2 dx, vec2 dy) { return t; } \
     vec4 lightmeter_texture(vec4 t, vec3 at, vec3 dx, vec3 dy) { return t; } vec4 lightmeter_texture(vec4 t, vec2 at, float level, ivec2 by) { return t; } \
     float lightmeter_texture(float t, vec3 at) { return t; } float lightmeter_texture(float t, vec4 at) { return t; } \
-    float lightmeter_texture(float t, vec3 at, float level) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } ";
+    float lightmeter_texture(float t, vec3 at, float level) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } \
+    vec4 lightmeter_combined(vec4 t, vec4 s) { return t; } float lightmeter_combined(float t, float s) { return t; } ";
 
 /// Built-in functions that sample.
 const SAMPLING: [&str; 21] = [
@@ -108,7 +109,7 @@ const INTERPOLATION: [&str; 15] = [
 
 /// A word, a mark, or what stands between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Token<'a> {
+pub(super) enum Token<'a> {
     Word(&'a str),
     Mark(&'a str),
     /// White space, comments, and lines for the preprocessor.
@@ -123,14 +124,14 @@ enum Kind {
 }
 
 impl<'a> Token<'a> {
-    const fn text(self) -> &'a str {
+    pub(super) const fn text(self) -> &'a str {
         match self {
             Self::Word(text) | Self::Mark(text) | Self::Space(text) => text,
         }
     }
 }
 
-fn tokens(text: &str) -> Vec<Token<'_>> {
+pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut found = vec![];
     let mut rest = text;
     let mut begins_line = true;
@@ -351,7 +352,7 @@ fn is_own_name(word: &str, next: Option<&Token<'_>>) -> bool {
 fn renamed(word: &str, is_called: bool) -> &str {
     match word {
         _ if is_called && SAMPLING.contains(&word) => SAMPLE,
-        "sampler2D" | "samplerCube" if is_called => COMBINE,
+        "sampler2D" | "samplerCube" | "sampler2DShadow" | "samplerCubeShadow" if is_called => COMBINE,
         "gl_FragColor" | "gl_FragData" => COLOR,
         "highp" | "mediump" | "lowp" => "",
         _ if is_texture(word) => sampled(word),
@@ -375,7 +376,7 @@ fn directed(line: &str, text: &mut String) {
 }
 
 /// Whether a word is the type of a texture, an image or a sampler: `sampler2D`, `texture2DArray`, `isampler3D`.
-fn is_texture(word: &str) -> bool {
+pub(super) fn is_texture(word: &str) -> bool {
     const SHAPES: [&str; 13] = [
         "1D",
         "2D",
@@ -393,7 +394,8 @@ fn is_texture(word: &str) -> bool {
     ];
     let plain = word.strip_prefix(['i', 'u']).unwrap_or(word);
     let shape = ["sampler", "texture", "image"].iter().find_map(|start| plain.strip_prefix(start));
-    word == "sampler" || shape.is_some_and(|shape| SHAPES.contains(&shape.strip_suffix("Shadow").unwrap_or(shape)))
+    matches!(word, "sampler" | "samplerShadow")
+        || shape.is_some_and(|shape| SHAPES.contains(&shape.strip_suffix("Shadow").unwrap_or(shape)))
 }
 
 /// The type of what a texture gives.

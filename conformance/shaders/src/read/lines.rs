@@ -24,6 +24,15 @@ impl Lines {
         self.of.push(number);
     }
 
+    /// Another text of as many lines, each of the same line of the file.
+    pub(super) fn with_text(&self, text: &str) -> Self {
+        let mut text = text.to_owned();
+        if !text.ends_with('\n') {
+            text.push('\n');
+        }
+        Self { text, of: self.of.clone() }
+    }
+
     /// Lines that the file does not have.
     pub(super) fn push_all(&mut self, text: &str) {
         text.lines().for_each(|line| self.push(line, 0));

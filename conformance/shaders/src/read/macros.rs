@@ -44,7 +44,8 @@ fn include(
     (depth, bytes): (usize, &mut usize),
 ) {
     let name = directive(line).and_then(|own| {
-        let rest = own.strip_prefix("include").or_else(|| own.strip_prefix("pragma include"))?;
+        let rest =
+            ["include", "pragma include", "moj_import", "import"].iter().find_map(|word| own.strip_prefix(word))?;
         let rest = rest.trim();
         Some(rest.trim_matches(['"', '<', '>', ' ', '(', ')']).to_owned())
     });
@@ -161,6 +162,30 @@ pub(super) fn configurations(text: &str, given: &[(String, String)]) -> Vec<(Str
     let called =
         |own: &Definitions| own.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ");
     let mut sets: Vec<Definitions> = vec![];
+    // The stage, where one file has two.
+    let named = |starts: &[&str], marks: &[&str]| {
+        let is_own = |name: &&String| {
+            let name = name.to_uppercase();
+            name.split('_').any(|part| {
+                starts.iter().any(|start| part.starts_with(start)) || marks.iter().any(|mark| part.ends_with(mark))
+            })
+        };
+        asked.defined.iter().filter(is_own).min_by_key(|name| name.len()).cloned()
+    };
+    let stages = [named(&["FRAG", "PIXEL"], &["PS", "FS", "FSH"]), named(&["VERT"], &["VS", "VSH"])];
+    if let [Some(fragment), Some(vertex)] = &stages
+        && fragment != vertex
+    {
+        let mut found = vec![];
+        for stage in [fragment, vertex] {
+            // The other of the two is left out for good.
+            let others = text.replace(&**(if stage == fragment { vertex } else { fragment }), "LIGHTMETER_OTHER_STAGE");
+            let given: Definitions = given.iter().cloned().chain([(stage.clone(), "1".to_owned())]).collect();
+            let named = |called: String| if called.is_empty() { stage.clone() } else { format!("{stage}, {called}") };
+            found.extend(configurations(&others, &given).into_iter().map(|(called, own)| (named(called), own)));
+        }
+        return found;
+    }
     if let Some((name, _)) = asked.compared.first() {
         let compared: BTreeSet<&String> =
             asked.compared.iter().filter(|(own, _)| own == name).map(|(_, value)| value).collect();

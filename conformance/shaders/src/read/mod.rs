@@ -7,12 +7,14 @@ mod compiler;
 mod complete;
 mod error;
 mod glsl;
+mod hosts;
 mod lines;
 mod macros;
 mod missing;
 mod options;
 mod source;
 mod spirv;
+mod wgsl;
 
 pub use complete::{ShaderReading, readings};
 pub use error::ShaderError;

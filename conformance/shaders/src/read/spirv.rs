@@ -5,6 +5,9 @@ use naga::front::spv;
 use std::path::Path;
 
 const OP_LINE: u32 = 8;
+const OP_ENTRY_POINT: u32 = 15;
+const OP_EXECUTION_MODE: u32 = 16;
+const OP_TYPE_FUNCTION: u32 = 33;
 const OP_FUNCTION_END: u32 = 56;
 const OP_LABEL: u32 = 248;
 const OP_NO_LINE: u32 = 317;
@@ -32,16 +35,30 @@ fn without_lines_outside(bytes: &[u8]) -> Vec<u8> {
     found
 }
 
+/// The bytes of an instruction that naga does not count in the places that it gives: its last operands, of some.
+fn uncounted(bytes: &[u8], at: usize, words: usize) -> usize {
+    let counted = match word(bytes, at) & 0xffff {
+        OP_EXECUTION_MODE | OP_TYPE_FUNCTION => 3,
+        OP_ENTRY_POINT => {
+            let ends = |k: &usize| word(bytes, at + 4 * k).to_le_bytes().contains(&0);
+            (3..words).find(ends).map_or(words, |last| last + 1)
+        }
+        _ => words,
+    };
+    words.saturating_sub(counted) * 4
+}
+
 fn table(bytes: &[u8]) -> Table {
-    let (mut at, mut found) = (20, vec![]);
+    let (mut at, mut lost, mut found) = (20, 0, vec![]);
     while at + 4 <= bytes.len() {
-        let (op, length) = (word(bytes, at) & 0xffff, (word(bytes, at) >> 16).max(1) as usize * 4);
+        let (op, words) = (word(bytes, at) & 0xffff, (word(bytes, at) >> 16).max(1) as usize);
+        lost += uncounted(bytes, at, words);
         match op {
-            OP_LINE => found.push((at, word(bytes, at + 8))),
-            OP_FUNCTION_END => found.push((at, 0)),
+            OP_LINE => found.push((at - lost, word(bytes, at + 8))),
+            OP_FUNCTION_END => found.push((at - lost, 0)),
             _ => {}
         }
-        at += length;
+        at += words * 4;
     }
     found
 }

@@ -32,13 +32,7 @@ impl Review<'_> {
                     || self.finder.distance(get("d")?) > 4
             }
             "mix" => return self.is_fog_mix(id, get("amount")?).then(|| "fog-mix".into()),
-            "gamma" => {
-                let power = self.graph.number_of(get("power")?)?;
-                let power = if power < 1.0 { 1.0 / power } else { power };
-                let is_usual = GAMMAS.iter().any(|gamma| (power - gamma).abs() < 0.01);
-                let is_vector = matches!(self.graph.ty(id), Type::Float(3 | 4));
-                is_usual && self.is_color(id) || is_vector && (1.3..2.7).contains(&power)
-            }
+            "gamma" => self.is_gamma(id, get("power")),
             "normal-transform" => {
                 let normal = get("normal")?;
                 self.named(normal) == Role::Normal || self.is_decoded(normal) || self.normals.contains(&id)
@@ -59,6 +53,33 @@ impl Review<'_> {
             _ => true,
         };
         is_step.then(|| kind.to_owned())
+    }
+
+    /// A power of a colour, by an exponent that is usual, or where nothing but the output follows.
+    fn is_gamma(&self, id: NodeId, power: Option<NodeId>) -> bool {
+        let is_vector = matches!(self.graph.ty(id), Type::Float(3 | 4));
+        let Some(power) = power else { return is_vector && self.is_last(id, 0) };
+        let Some(power) = self.graph.number_of(power) else {
+            return is_vector && self.lower_names(power).contains("gamma");
+        };
+        let power = if power < 1.0 { 1.0 / power } else { power };
+        let is_usual = GAMMAS.iter().any(|gamma| (power - gamma).abs() < 0.01);
+        is_usual && self.is_color(id) || is_vector && ((1.3..2.7).contains(&power) || self.is_last(id, 0))
+    }
+
+    /// Whether nothing is done with a value but handing it on.
+    fn is_last(&self, id: NodeId, depth: u32) -> bool {
+        const MOST: u32 = 6;
+        let hands_on = |own: &NodeId| {
+            let keeps = match self.graph.op(*own) {
+                Op::Vector(_) | Op::Swizzle(..) | Op::Splat(_) => true,
+                Op::Select(condition, ..) => *condition != id,
+                Op::Call(Function::Min | Function::Max, x) => self.held_part(x) == Some(id),
+                _ => false,
+            };
+            keeps && self.is_last(*own, depth + 1)
+        };
+        depth < MOST && self.users(id).iter().all(hands_on)
     }
 
     /// Whether something holds it above 0: there it is a Lambert factor, and here something else.

@@ -121,6 +121,12 @@ impl Review<'_> {
 
     fn claim_lambert(&mut self, site: &Site, template: &Template, signs: &Signs, claim: &mut Claim) {
         let (n, l) = self.normal_and_light(site, template);
+        // What keeps it from 0 alone is no ambient light.
+        const LEAST: f64 = 0.01;
+        let floor = Self::of(site, template, "floor").and_then(|own| self.graph.number_of(own.id));
+        if claim.name == "ambient-as-floor" && floor.is_some_and(|floor| floor > 0.0 && floor <= LEAST) {
+            claim.set(StepVerdict::Right, "", ", which keeps it from 0 alone");
+        }
         let own = sign_of(site, template, &n, &l);
         if template.head.is_weak {
             let own = self.conditions_of(site);
@@ -290,10 +296,18 @@ impl Review<'_> {
     }
 
     fn claim_gamma(&mut self, site: &Site, template: &Template, claim: &mut Claim) {
-        let power = Self::of(site, template, "power").and_then(|own| self.graph.number_of(own.id)).unwrap_or(1.0);
-        let (name, what) = if power < 1.0 { ("encode", "encoding") } else { ("decode", "decoding") };
+        let given = Self::of(site, template, "power").map(|own| own.id);
+        let power = given.map_or(Some(0.5), |own| self.graph.number_of(own));
+        let is_reciprocal = given.is_some_and(
+            |own| matches!(self.graph.op(own), Op::Binary(Binary::Divide, one, _) if self.graph.is_number(*one, 1.0)),
+        );
+        let encodes = power.map_or(is_reciprocal, |power| power < 1.0);
+        let (name, what) = if encodes { ("encode", "encoding") } else { ("decode", "decoding") };
         claim.name = name.into();
-        claim.sentence = format!("a power of {power:.4}: gamma {what}, near sRGB's curve, which it is not");
+        claim.sentence = match power {
+            Some(power) => format!("a power of {power:.4}: gamma {what}, near sRGB's curve, which it is not"),
+            None => format!("a power that is given: gamma {what}"),
+        };
     }
 
     /// By what distance fog is.
@@ -404,7 +418,9 @@ impl Review<'_> {
             let is_interpolated = self.origin_of(bound.id).is_some();
             let is_transformed = matches!(self.graph.op(bound.id), Op::MatrixVector(..) | Op::VectorMatrix(..));
             let is_certain = is_interpolated || is_transformed || role != Role::Normal;
-            let verdict = if is_certain { StepVerdict::Mistake } else { StepVerdict::Perhaps };
+            // What a texture filters is left as it is by many.
+            let is_filtered = role == Role::Normal && self.is_of_texture(bound.id);
+            let verdict = if is_certain && !is_filtered { StepVerdict::Mistake } else { StepVerdict::Perhaps };
             let sentence = if is_interpolated {
                 format!("the {what} comes interpolated, and is not normalised")
             } else {
@@ -417,6 +433,11 @@ impl Review<'_> {
                 self.say(ShaderStep { line, also, kind: "length".into(), verdict, name: id.into(), sentence, code });
             }
         }
+    }
+
+    fn is_of_texture(&self, id: NodeId) -> bool {
+        let leaves = self.graph.leaves_of(id);
+        leaves.iter().any(|own| self.graph.leaf_of(*own).is_some_and(|leaf| leaf.origin == Origin::Texture))
     }
 
     fn role_of(&self, site: &Site, template: &Template, name: &str, bound: &Bound) -> Role {

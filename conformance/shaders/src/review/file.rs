@@ -1,11 +1,11 @@
 //! A file's steps, over all that it may be read as.
 
 use super::Review;
-use crate::graph::Graph;
-use crate::lower::{Lowering, Root};
+use crate::graph::{Graph, NodeId};
+use crate::lower::{Lowering, Output, Root};
 use crate::read::{ReadOptions, ShaderError, ShaderReading, readings};
 use crate::unify::Library;
-use lightmeter_document::report::{ShaderReview, ShaderStep, ShaderSum};
+use lightmeter_document::report::{ShaderReview, ShaderStep, ShaderSum, StepVerdict};
 use naga::{Block, Function, Handle, Statement};
 use std::collections::HashSet;
 use std::path::Path;
@@ -84,6 +84,7 @@ impl Reviewer {
         }
         let graph = lowering.graph;
         let (mut steps, sums) = self.steps_of(&graph, &roots, reading);
+        steps.extend(self.steps_unused(&graph, &roots, reading, &steps));
         // What is called, but not on a way that outputs take: each by itself.
         let covered = covered(&graph, &roots);
         let mut more = Lowering::new(module, reading);
@@ -99,14 +100,50 @@ impl Reviewer {
         let known: Vec<u32> = steps.iter().flat_map(lines).collect();
         steps.extend(others.into_iter().filter(|step| {
             let is_seen = lines(step).iter().any(|line| covered.contains(line) || known.contains(line));
-            !is_seen && !matches!(&*step.kind, "terms" | "value")
+            // What a function computes of what it is given may be hidden by what it is given.
+            let is_plain = ["schlick", "gamma", "srgb", "tone", "fog", "blend"].contains(&&*step.kind)
+                && step.verdict != StepVerdict::Mistake
+                && !lines(step).iter().any(|line| known.contains(line));
+            is_plain || !is_seen && !matches!(&*step.kind, "terms" | "value")
         }));
         (steps, sums, notes)
+    }
+
+    /// Steps that a shader computes and does not use: what they are, and no mistake.
+    fn steps_unused(
+        &self,
+        graph: &Graph,
+        roots: &[Root],
+        reading: &ShaderReading,
+        known: &[ShaderStep],
+    ) -> Vec<ShaderStep> {
+        let used: HashSet<_> =
+            roots.iter().flat_map(|root| &root.outputs).flat_map(|own| graph.all_of(own.value)).collect();
+        let operands: HashSet<_> = graph.ids().flat_map(|id| graph.op(id).operands()).collect();
+        let is_unused = |id: &NodeId| !used.contains(id) && !operands.contains(id) && graph.ty(*id).is_float();
+        let outputs = graph.ids().filter(is_unused).map(|value| Output { name: String::new(), value }).collect();
+        let (steps, _) = self.steps_of(graph, &[Root { name: String::new(), outputs }], reading);
+        let is_new = |step: &ShaderStep| {
+            let is_step = !matches!(&*step.kind, "terms" | "value" | "length") && step.verdict != StepVerdict::Mistake;
+            is_step && known.iter().all(|own| own.line != step.line || own.kind != step.kind)
+        };
+        let told = |mut step: ShaderStep| {
+            step.sentence += "; what it gives is not used";
+            step
+        };
+        steps.into_iter().filter(is_new).map(told).collect()
     }
 
     fn steps_of(&self, graph: &Graph, roots: &[Root], reading: &ShaderReading) -> (Vec<ShaderStep>, Vec<ShaderSum>) {
         let mut review = Review::new(graph, &self.library, reading.is_vertex());
         review.roots(roots);
+        // What is left out might be what is missing.
+        if reading.is_partial {
+            let of_sums = review.steps.iter_mut().filter(|step| matches!(&*step.kind, "terms" | "value"));
+            of_sums
+                .filter(|step| step.verdict == StepVerdict::Mistake)
+                .for_each(|step| step.verdict = StepVerdict::Perhaps);
+        }
         (review.steps, review.sums)
     }
 }

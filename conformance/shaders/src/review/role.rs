@@ -72,34 +72,37 @@ impl Review<'_> {
                 let is_unit = |own: NodeId| {
                     matches!(self.graph.op(self.graph.without_sign(own).0), Op::Call(Function::Normalize, _))
                 };
-                if is_unit(*a) && is_unit(*b) {
+                let is_known = |own: NodeId| matches!(self.named(own), Role::Light | Role::Eye);
+                if is_unit(*a) && (is_unit(*b) || is_known(*b)) || is_unit(*b) && is_known(*a) {
                     return Role::Half;
                 }
             }
             _ => {}
         }
         let text = self.names(core);
-        let flat = text.to_lowercase();
+        let lower = text.to_lowercase();
+        // A field is what its own name says.
+        let flat = lower.rsplit('.').next().filter(|last| !last.contains(' ')).unwrap_or(&lower);
         let words = words(&text);
         let has = |of: &[&str]| is_any(&words, of);
         let is_light_normal =
             text.split(' ').map(str::to_lowercase).any(|own| own.contains("light") && own.contains("normal"));
         if flat == "axis"
-            || has(&["spot", "cone", "axis"]) && !has(&["position", "pos", "posn", "location"]) && flat.contains("dir")
+            || has(&["spot", "cone", "axis"]) && !has(&["position", "pos", "posn", "location"]) && lower.contains("dir")
         {
             Role::Axis
         } else if has(&["half", "halfway"]) || flat == "h" {
             Role::Half
         } else if is_light_normal {
             Role::Light
-        } else if has(&["normal", "norm", "normals", "nrm", "bump"]) || ["n", "nn"].contains(&&*flat) {
+        } else if has(&["normal", "norm", "normals", "nrm", "bump"]) || ["n", "nn"].contains(&flat) {
             Role::Normal
         } else if has(&["light", "sun", "lamp", "lights", "lightpos", "lpos", "lightdir"]) || flat == "l" {
             Role::Light
         // A surface's position is the vector from the eye, where that is the origin.
         } else if has(&[
             "eye", "view", "camera", "cam", "viewer", "position", "posn", "vertex", "pos", "point", "p", "frag",
-        ]) || ["v", "e"].contains(&&*flat)
+        ]) || ["v", "e"].contains(&flat)
         {
             Role::Eye
         } else {

@@ -221,15 +221,17 @@ impl Review<'_> {
                 _ => break,
             };
         }
-        match self.graph.line(own) {
-            0 => self.graph.line(id),
-            line => line,
+        match (self.graph.line(own), self.graph.line(id)) {
+            // A compiler may say no line: that of what is made of it is the next best.
+            (0, 0) => self.users(id).iter().map(|user| self.graph.line(*user)).find(|line| *line > 0).unwrap_or(0),
+            (0, line) | (line, _) => line,
         }
     }
 
     /// All lines of a value.
     pub(super) fn lines_of(&self, id: NodeId) -> Vec<u32> {
-        let mut found: Vec<u32> = self.graph.occurrences(id).iter().map(|own| own.line).collect();
+        let mut found: Vec<u32> =
+            self.graph.occurrences(id).iter().map(|own| own.line).filter(|line| *line > 0).collect();
         found.sort_unstable();
         found.dedup();
         found

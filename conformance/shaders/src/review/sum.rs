@@ -165,6 +165,7 @@ impl Review<'_> {
         let place = |kinds: &[&str]| through.iter().position(|own| kinds.contains(&&*self.sites[own].kind));
         if let (Some(fog), Some(gamma)) = (place(&["fog-mix"]), place(&["gamma", "srgb"]))
             && fog < gamma
+            && ["fog", "mist", "haze"].iter().any(|word| self.lower_names(through[fog]).contains(word))
         {
             said.push((StepVerdict::Mistake, "fog-after-gamma", "fog is mixed into a colour that is encoded already"));
         }

@@ -22,6 +22,14 @@ fn attenuation_one_square(offset: vec3f) -> f32 { return 1.0 / (1.0 + dot(offset
 fn inverse_square(offset: vec3f) -> f32 { return 1.0 / dot(offset, offset); }
 //@ attenuation right inverse-square: k/d²
 fn inverse_square_of(offset: vec3f, k: f32) -> f32 { return k / dot(offset, offset); }
+//@ attenuation right inverse-square: a colour over d²
+fn inverse_square_colored(offset: vec3f, color: vec3f) -> vec3f { return color / dot(offset, offset); }
+//@ attenuation right inverse-square: a colour over k·d²
+fn inverse_square_colored_by(offset: vec3f, color: vec3f, k: f32) -> vec3f { return color / (k * dot(offset, offset)); }
+//@ attenuation right inverse-square: a/(k·d²)
+fn inverse_square_scaled(offset: vec3f, k: f32, kq: f32) -> f32 { return k / (kq * dot(offset, offset)); }
+//@ attenuation dialect power: 1/d^k
+fn inverse_power(d: f32, exponent: f32) -> f32 { return 1.0 / pow(d, exponent); }
 //@ attenuation right inverse-square: 1/(k·d²)
 fn inverse_square_by(offset: vec3f, k: f32) -> f32 { return 1.0 / (k * dot(offset, offset)); }
 //@ attenuation right inverse-square weak: the inverse square 1/d²

@@ -2,6 +2,8 @@
 
 //@ gamma right weak <f32 vec3f vec4f>: a power of the colour
 fn gamma(color: T, power: f32) -> T { return pow(color, T(power)); }
+//@ gamma right weak <vec3f vec4f>: the root of the colour, a power of 1/2
+fn gamma_root(color: T) -> T { return sqrt(color); }
 //@ srgb right encode <f32 vec3f>: sRGB's encoding
 fn srgb_encode(color: T) -> T { return select(1.055 * pow(color, T(1.0 / 2.4)) - 0.055, 12.92 * color, color <= T(0.0031308)); }
 //@ srgb right decode <f32 vec3f>: sRGB's decoding
@@ -19,6 +21,10 @@ fn reinhard(color: T) -> T { return color / (color + T(1.0)); }
 fn reinhard_exposed(color: T, k: f32) -> T { return color * k / (color * k + T(1.0)); }
 //@ tone dialect reinhard-extended (Reinhard 2002) <f32 vec3f>: Reinhard's curve with a white point
 fn reinhard_extended(color: T, k: f32) -> T { return color * (T(1.0) + color / (k * k)) / (color + T(1.0)); }
+//@ tone dialect reinhard-extended (Reinhard 2002) <f32 vec3f>: Reinhard's curve with a white point that is squared already
+fn reinhard_extended_square(color: T, k: f32) -> T { return color * (T(1.0) + color / k) / (color + T(1.0)); }
+//@ tone dialect aces (Hill) <f32 vec3f>: the fit of ACES's reference and output transforms
+fn aces_hill(color: T) -> T { return (color * (color + 0.0245786) - 0.000090537) / (color * (0.983729 * color + 0.4329510) + 0.238081); }
 //@ tone dialect exposure <vec3f>: 1 − exp(−k·c)
 fn exposure(color: T, k: f32) -> T { return T(1.0) - exp(-color * k); }
 //@ tone dialect aces (Narkowicz 2015) <f32 vec3f>: the fit of ACES's curve

@@ -15,6 +15,8 @@ fn half_lambert_power(n: vec3f, l: vec3f, exponent: f32) -> f32 { return pow(dot
 //@ lambert dialect ambient-as-floor: the cosine is held above an ambient value
 fn lambert_floor(n: vec3f, l: vec3f, floor: f32) -> f32 { return max(dot(n, l), floor); }
 //@ lambert dialect ambient-as-floor: the cosine is held above an ambient value, and below 1
+fn lambert_floor_held(n: vec3f, l: vec3f, floor: f32) -> f32 { return clamp(dot(n, l), floor, 1.0); }
+//@ lambert dialect ambient-as-floor: an ambient value is added to the cosine, held within 0 and 1
 fn lambert_floor_one(n: vec3f, l: vec3f, floor: f32) -> f32 { return clamp(dot(n, l) + floor, 0.0, 1.0); }
 //@ lambert dialect wrapped (GPU Gems 1, chapter 16): wrapped Lambert
 fn lambert_wrapped(n: vec3f, l: vec3f, share: f32) -> f32 { return max((dot(n, l) + share) / (1.0 + share), 0.0); }
@@ -58,6 +60,12 @@ fn normal_by_transpose(m: mat3x3f, normal: vec3f) -> vec3f { return normal * m; 
 fn normal_by_transposed(m: mat3x3f, normal: vec3f) -> vec3f { return transpose(m) * normal; }
 //@ decode-normal right: a normal decoded from a texture, 2c − 1
 fn normal_decoded(color: vec3f) -> vec3f { return color * 2.0 - 1.0; }
+//@ decode-normal right: a normal decoded from a texture with a fourth component, 2c − 1
+fn normal_decoded_four(color: vec4f) -> vec4f { return color * 2.0 - 1.0; }
+//@ decode-normal dialect of-bytes: a normal decoded from bytes, of which 128 is 0 and 255 is 1
+fn normal_decoded_bytes(color: vec3f) -> vec3f { return color * (255.0 / 127.0) - 128.0 / 127.0; }
+//@ decode-normal right of-bytes: a normal decoded from bytes, of which 128 is 0
+fn normal_decoded_bytes_even(color: vec3f) -> vec3f { return color * (255.0 / 128.0) - 1.0; }
 
 //@ schlick right <f32 vec3f>: Schlick's Fresnel term F0 + (1 − F0)(1 − c)⁵
 fn schlick(f0: T, c: f32) -> T { return f0 + (T(1.0) - f0) * pow(1.0 - c, 5.0); }
@@ -65,8 +73,14 @@ fn schlick(f0: T, c: f32) -> T { return f0 + (T(1.0) - f0) * pow(1.0 - c, 5.0); 
 fn schlick_of_vectors(f0: T, a: vec3f, b: vec3f) -> T { return f0 + (T(1.0) - f0) * pow(1.0 - max(dot(a, b), 0.0), 5.0); }
 //@ schlick right: Schlick's Fresnel factor (1 − n·v)⁵
 fn schlick_factor(a: vec3f, b: vec3f) -> f32 { return pow(1.0 - max(dot(a, b), 0.0), 5.0); }
+//@ schlick right: Schlick's Fresnel factor (1 − n·v)⁵, of a cosine that may be negative
+fn schlick_factor_open(a: vec3f, b: vec3f) -> f32 { return pow(1.0 - dot(a, b), 5.0); }
 //@ schlick dialect rim: a rim by (1 − n·v)^k
 fn rim(a: vec3f, b: vec3f, exponent: f32) -> f32 { return pow(1.0 - max(dot(a, b), 0.0), exponent); }
+//@ schlick dialect rim: a rim by (1 − n·v)^k, of a cosine that may be negative
+fn rim_open(a: vec3f, b: vec3f, exponent: f32) -> f32 { return pow(1.0 - dot(a, b), exponent); }
+//@ schlick dialect grazing (Burley 2012) <f32 vec3f>: Schlick's Fresnel term between two values, F0 + (F90 − F0)(1 − c)⁵
+fn schlick_grazing(f0: T, f90: T, c: f32) -> T { return f0 + (f90 - f0) * pow(1.0 - c, 5.0); }
 //@ schlick dialect rough (Lagarde): Schlick's Fresnel term with roughness
 fn schlick_rough(f0: vec3f, c: f32, share: f32) -> vec3f { return f0 + (max(vec3f(1.0 - share), f0) - f0) * pow(1.0 - c, 5.0); }
 //@ schlick dialect spherical-gaussian (Unreal): Schlick's Fresnel term by a power of two

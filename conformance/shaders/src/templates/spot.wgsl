@@ -14,6 +14,10 @@ fn spot_smooth(l: vec3f, axis: vec3f, inner: f32, outer: f32) -> f32 { let t = c
 fn spot_squared(l: vec3f, axis: vec3f, inner: f32, outer: f32) -> f32 { let t = clamp((dot(-l, axis) - outer) / (inner - outer), 0.0, 1.0); return t * t; }
 //@ spot mistake not-clamped: the spotlight's ramp is not held within 0 and 1
 fn spot_ramp_open(l: vec3f, axis: vec3f, inner: f32, outer: f32) -> f32 { return (dot(-l, axis) - outer) / (inner - outer); }
+//@ spot mistake not-clamped: the spotlight's ramp of a cosine held above 0 is not held within 0 and 1
+fn spot_ramp_open_held(l: vec3f, axis: vec3f, inner: f32, outer: f32) -> f32 { return (max(dot(-l, axis), 0.0) - outer) / (inner - outer); }
+//@ spot dialect ramp: the spotlight's edge as a straight ramp of a cosine held above 0
+fn spot_ramp_held(l: vec3f, axis: vec3f, inner: f32, outer: f32) -> f32 { return clamp((max(dot(-l, axis), 0.0) - outer) / (inner - outer), 0.0, 1.0); }
 //@ spot right: the spotlight's cone with an exponent
 fn spot_power(l: vec3f, axis: vec3f, cut: f32, exponent: f32) -> f32 { let c = dot(-l, axis); return select(0.0, pow(max(c, 0.0), exponent), c >= cut); }
 //@ spot right unguarded: the spotlight's cone with an exponent; a cosine below 0 has no power

@@ -23,7 +23,7 @@ pub(crate) enum Class {
 }
 
 /// The names of templates' parameters.
-const NAMES: [(&str, Class); 37] = [
+const NAMES: [(&str, Class); 38] = [
     ("n", Class::Unit),
     ("l", Class::Unit),
     ("v", Class::Unit),
@@ -35,6 +35,7 @@ const NAMES: [(&str, Class); 37] = [
     ("m", Class::Matrix),
     ("color", Class::Color),
     ("other", Class::Color),
+    ("f90", Class::Color),
     ("third", Class::Color),
     ("lit", Class::Color),
     ("f0", Class::Color),
