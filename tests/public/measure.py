@@ -11,6 +11,8 @@ import collections, hashlib, json, os, pathlib, subprocess, sys
 HERE = pathlib.Path(__file__).resolve().parent
 RIGHT = {"exp", "exp-amount", "exp2-opengl", "exp2-opengl-amount", "inverse-square", "inverse", "encode", "decode", "unguarded", "right"}
 FAR = {"terms", "value"}
+# A ramp is listed by its form, and told by what it is for.
+KINDS = {"ramp": {"ramp", "fog", "spot", "attenuation"}}
 
 
 def classes(verdict):
@@ -51,7 +53,7 @@ def measured(files, path):
             near = [
                 (min(abs(own - line) for own in [step["line"], *step.get("also", [])]), k)
                 for k, step in enumerate(steps)
-                if step["kind"] == kind
+                if step["kind"] in KINDS.get(kind, {kind})
             ]
             near = sorted((d, k) for d, k in near if d <= reach)
             good = [k for _, k in near if is_right(listed, steps[k])]

@@ -287,7 +287,7 @@ fn what_is_not_used_is_told_so_and_what_ends_a_turn_is_read() {
     let text = "varying vec3 normal;\nuniform vec3 toLight;\nvoid main() {\n  float lit = max(dot(normalize(normal), toLight), 0.0);\n  gl_FragColor = vec4(1.0);\n}\n";
     let found = review("unused.fs", text);
     assert_eq!(steps_of(&found), ["4 lambert right"]);
-    assert!(found.steps[0].sentence.ends_with("what it gives is not used"), "{found:?}");
+    assert!(found.steps[0].sentence.ends_with("it does not enter an output's arithmetic"), "{found:?}");
     let turn = "@fragment fn main(@location(0) normal: vec3f, @location(1) toLight: vec3f) -> @location(0) vec4f {\n  var sum = 0.0;\n  var i = 0;\n  loop {\n    if (i >= 4) { break; }\n    continuing {\n      sum += max(dot(normalize(normal), normalize(toLight)), 0.0);\n      i++;\n    }\n  }\n  return vec4f(sum);\n}\n";
     assert_eq!(steps("turn.wgsl", turn), ["7 lambert right"]);
 }

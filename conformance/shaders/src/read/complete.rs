@@ -527,6 +527,29 @@ fn of_direct3d_9(own: &Lines) -> Lines {
     found
 }
 
+/// States of Direct3D 10's effects, in braces after a name, are taken off.
+fn without_states(own: &Lines) -> Lines {
+    const STATES: [&str; 5] =
+        ["SamplerState", "SamplerComparisonState", "BlendState", "RasterizerState", "DepthStencilState"];
+    let mut found = Lines::default();
+    // Whether a state's braces are looked for, and how many are open.
+    let (mut is_state, mut depth) = (false, 0_i32);
+    for (line, number) in own.iter() {
+        let code = line.split("//").next().unwrap_or_default();
+        let all: Vec<&str> = words(code).collect();
+        let begins = depth == 0 && all.len() == 2 && STATES.contains(&all[0]) && !code.contains(';');
+        if !begins && !is_state {
+            found.push(line, number);
+            continue;
+        }
+        let declares = begins && all[0].starts_with("Sampler");
+        found.push(&if declares { format!("{} {};", all[0], all[1]) } else { String::new() }, number);
+        depth += code.chars().map(|c| i32::from(c == '{') - i32::from(c == '}')).sum::<i32>();
+        is_state = depth > 0 || !code.contains('}');
+    }
+    found
+}
+
 /// The place of the bracket that a text's last closes.
 fn opening(text: &str) -> Option<usize> {
     let mut depth = 1;
@@ -553,6 +576,7 @@ fn of_hlsl(path: &Path, own: &Lines, options: &ReadOptions) -> Result<Vec<Shader
     let mut notes = vec![];
     let included = of_direct3d_9(&mended(&macros::included(own, options, &mut notes), &mut notes));
     let mut text = Lines::default();
+    let included = without_states(&included);
     if words(&included.text).any(|word| word == "UnityCG" || word.starts_with("UNITY_") || word.starts_with("fixed")) {
         text.push_all(hosts::OF_UNITY);
     }

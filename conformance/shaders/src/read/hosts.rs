@@ -43,7 +43,7 @@ pub(super) fn sections(own: &Lines) -> Vec<Section> {
         return raw_strings(own);
     }
     if own.iter().filter_map(|(line, _)| marker(line)).flatten().count() == 0 {
-        return vec![];
+        return by_versions(own);
     }
     let blank = |upto: &Lines| {
         let mut found = Lines::default();
@@ -66,6 +66,25 @@ pub(super) fn sections(own: &Lines) -> Vec<Section> {
         }
     }
     found.retain(|own| own.stage.is_some());
+    found
+}
+
+/// Shaders that each begin with their version.
+fn by_versions(own: &Lines) -> Vec<Section> {
+    let begins = |line: &str| line.trim_start().starts_with("#version");
+    if own.iter().filter(|(line, _)| begins(line)).count() < 2 {
+        return vec![];
+    }
+    let mut found: Vec<Section> = vec![];
+    for (line, number) in own.iter() {
+        if begins(line) || found.is_empty() {
+            found.push(Section { lines: Lines::default(), stage: None });
+        }
+        if let Some(section) = found.last_mut() {
+            section.lines.push(line, number);
+        }
+    }
+    found.retain(|own| own.lines.text.contains('{'));
     found
 }
 

@@ -49,8 +49,11 @@ pub(super) fn plain(own: &Lines) -> Lines {
 
 /// A line without what hosts and earlier drafts wrote.
 fn today(line: &str) -> String {
-    let mut line =
-        line.replace("::", "_").replace("@stage(fragment)", "@fragment").replace("@stage(vertex)", "@vertex");
+    let mut line = line
+        .replace("::", "_")
+        .replace("@stage(fragment)", "@fragment")
+        .replace("@stage(vertex)", "@vertex")
+        .replace("<push_constant>", "<immediate>");
     while let Some((start, end)) = line.find("#{").and_then(|at| Some((at, line[at..].find('}')? + at + 1))) {
         line.replace_range(start..end, "0");
     }

@@ -60,7 +60,7 @@ impl Review<'_> {
         let is_vector = matches!(self.graph.ty(id), Type::Float(3 | 4));
         let Some(power) = power else { return is_vector && self.is_last(id, 0) };
         let Some(power) = self.graph.number_of(power) else {
-            return is_vector && self.lower_names(power).contains("gamma");
+            return self.lower_names(power).contains("gamma") && (is_vector || self.is_color(id));
         };
         let power = if power < 1.0 { 1.0 / power } else { power };
         let is_usual = GAMMAS.iter().any(|gamma| (power - gamma).abs() < 0.01);

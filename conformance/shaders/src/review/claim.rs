@@ -417,7 +417,8 @@ impl Review<'_> {
             }
             let is_interpolated = self.origin_of(bound.id).is_some();
             let is_transformed = matches!(self.graph.op(bound.id), Op::MatrixVector(..) | Op::VectorMatrix(..));
-            let is_certain = is_interpolated || is_transformed || role != Role::Normal;
+            // What moves an axis or a light is a rotation by habit.
+            let is_certain = is_interpolated || is_transformed == (role == Role::Normal);
             // What a texture filters is left as it is by many.
             let is_filtered = role == Role::Normal && self.is_of_texture(bound.id);
             let verdict = if is_certain && !is_filtered { StepVerdict::Mistake } else { StepVerdict::Perhaps };
@@ -471,9 +472,9 @@ impl Review<'_> {
                 match (is_fine(a, self), is_fine(b, self)) {
                     (true, _) => self.origin_of(b),
                     (_, true) => self.origin_of(a),
-                    _ => match (self.origin_of(a)?, self.origin_of(b)?) {
-                        (Origin::Input, _) | (_, Origin::Input) => Some(Origin::Input),
-                        (own, _) => Some(own),
+                    _ => match (self.origin_of(a), self.origin_of(b)) {
+                        (Some(Origin::Input), _) | (_, Some(Origin::Input)) => Some(Origin::Input),
+                        (a, b) => a.and(b),
                     },
                 }
             }

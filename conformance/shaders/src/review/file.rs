@@ -128,7 +128,7 @@ impl Reviewer {
             is_step && known.iter().all(|own| own.line != step.line || own.kind != step.kind)
         };
         let told = |mut step: ShaderStep| {
-            step.sentence += "; what it gives is not used";
+            step.sentence += "; it does not enter an output's arithmetic";
             step
         };
         steps.into_iter().filter(is_new).map(told).collect()

@@ -26,7 +26,7 @@ fn ramp_width(x: f32, start: f32, width: f32) -> f32 { return clamp((x - start) 
 fn ramp_width_falling(x: f32, start: f32, width: f32) -> f32 { return 1.0 - clamp((x - start) / width, 0.0, 1.0); }
 //@ ramp mistake not-clamped weak: a straight ramp from a limit on, over a width, not held within 0 and 1
 fn ramp_width_open(x: f32, start: f32, width: f32) -> f32 { return (x - start) / width; }
-//@ ramp right: a straight ramp to a limit, held within 0 and 1
+//@ ramp right weak: a straight ramp to a limit, held within 0 and 1
 fn ramp_to_limit(x: f32, to: f32) -> f32 { return clamp(x / to, 0.0, 1.0); }
 //@ ramp right falling: k − k·d/D, held within 0 and 1: a ramp that begins at a share of its end
 fn ramp_share(x: f32, k: f32, to: f32) -> f32 { return clamp(k - k * x / to, 0.0, 1.0); }

@@ -135,8 +135,12 @@ pub(super) fn repaired<T>(
                 Missing::Variable(name) => stubs.declare(name),
                 Missing::Function(name) => stubs.declare_function(name),
                 Missing::Other(words) => {
-                    words.contains("found Identifier(")
-                        && stubs.declare_qualifier(words.split('"').nth(1).unwrap_or_default())
+                    let extension = words
+                        .strip_prefix("the `")
+                        .and_then(|own| own.strip_suffix("` enable extension is not enabled"));
+                    extension.is_some_and(|own| stubs.enable(own))
+                        || words.contains("found Identifier(")
+                            && stubs.declare_qualifier(words.split('"').nth(1).unwrap_or_default())
                 }
             };
         if is_stubbed {

@@ -28,6 +28,8 @@ pub(super) struct Use<'a> {
     pub(super) after: &'a str,
     /// The type of the variable that it is the whole value of.
     pub(super) declares: Option<&'a str>,
+    /// Whether it multiplies as a matrix does: `mul(…, name)`, `name * vec4(…)`.
+    pub(super) is_matrix: bool,
 }
 
 /// The place behind what a bracket at a place opens.
@@ -46,12 +48,31 @@ fn behind(code: &[&str], open: usize) -> usize {
     code.len()
 }
 
+/// The place of the second argument of the brackets that open at a place.
+fn second(code: &[&str], open: usize) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (k, mark) in code.iter().enumerate().skip(open) {
+        match *mark {
+            "(" | "[" | "{" => depth += 1,
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
+            "," if depth == 1 => return Some(k + 1),
+            _ => {}
+        }
+        if depth == 0 {
+            return None;
+        }
+    }
+    None
+}
+
 /// All names that are used as values.
 pub(super) fn uses<'a>(code: &[&'a str]) -> Vec<Use<'a>> {
     let at = |k: usize| code.get(k).copied().unwrap_or("");
     let back = |k: usize, by: usize| k.checked_sub(by).map_or("", &at);
     let declared: HashMap<&str, &str> =
         code.windows(3).filter(|own| own[2] == ";" && is_name(own[0])).map(|own| (own[1], own[0])).collect();
+    let seconds: HashSet<usize> =
+        (0..code.len()).filter(|&k| code[k] == "mul" && at(k + 1) == "(").filter_map(|k| second(code, k + 1)).collect();
     let mut found: Vec<Use<'a>> = vec![];
     for k in (0..code.len()).filter(|&k| is_name(code[k]) && back(k, 1) != "." && !is_type(code[k])) {
         let mut own = Use {
@@ -61,6 +82,7 @@ pub(super) fn uses<'a>(code: &[&'a str]) -> Vec<Use<'a>> {
             before: [back(k, 3), back(k, 2), back(k, 1)],
             after: "",
             declares: None,
+            is_matrix: seconds.contains(&k),
         };
         let mut next = k + 1;
         loop {
@@ -80,6 +102,7 @@ pub(super) fn uses<'a>(code: &[&'a str]) -> Vec<Use<'a>> {
             }
         }
         own.after = at(next);
+        own.is_matrix |= own.after == "*" && at(next + 1) == "vec4";
         if own.before[2] == "=" && own.after == ";" && is_name(own.before[1]) {
             // `T x = name;`, and `x = name;` of a `T x;`.
             own.declares = Some(own.before[0])

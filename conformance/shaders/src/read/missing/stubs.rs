@@ -34,8 +34,19 @@ const WORDS: [(&str, &str); 25] = [
     ("pow4", "pow4(x) ((x) * (x) * (x) * (x))"),
     ("pow5", "pow5(x) ((x) * (x) * (x) * (x) * (x))"),
 ];
+/// Words of Direct3D's effects that its compilers take in any case.
+const EFFECTS: [(&str, &str); 3] =
+    [("Matrix", "Matrix float4x4"), ("MATRIX", "MATRIX float4x4"), ("Vector", "Vector float4")];
 /// The choice of a function that gives its argument.
 const PASSES: &str = "";
+
+const fn host_words(dialect: Dialect) -> &'static [(&'static str, &'static str)] {
+    match dialect {
+        Dialect::Glsl => &WORDS,
+        Dialect::Hlsl => &EFFECTS,
+        Dialect::Wgsl => &[],
+    }
+}
 
 /// A choice among types, the likeliest first.
 #[derive(Debug)]
@@ -78,6 +89,7 @@ pub(super) struct Stubs {
     /// Structures: names and fields, those that others need first.
     structures: Vec<(String, Vec<Field>)>,
     variables: Vec<Field>,
+    /// Words that stand for nothing; of WGSL extensions that are enabled.
     qualifiers: BTreeSet<String>,
     /// Functions, with the choice of what they give; none of those that stand as statements.
     functions: Vec<(String, Option<usize>)>,
@@ -99,6 +111,9 @@ fn is_swizzle(word: &str) -> bool {
 fn order(name: &str, chains: &[Chain<'_, '_>], dialect: Dialect) -> Vec<String> {
     let mut likely: Vec<&str> = vec![];
     for (fields, of) in chains {
+        if fields.is_empty() && of.is_matrix {
+            likely.push("mat4");
+        }
         if fields.is_empty() {
             likely.extend(of.declares.filter(|ty| is_type(ty)));
             let word = of.before[1].strip_suffix("Lod").unwrap_or(of.before[1]);
@@ -126,9 +141,13 @@ fn order(name: &str, chains: &[Chain<'_, '_>], dialect: Dialect) -> Vec<String> 
             let has = |of: &[&str]| of.iter().any(|word| lower.contains(word));
             if has(&["samp"]) && dialect != Dialect::Glsl {
                 likely.push("sampler");
+            } else if lower.contains("normal") && has(&["toworld", "toview", "toeye", "mat"]) {
+                likely.extend(["mat3", "mat4"]);
             } else if lower.ends_with("tbn") {
                 likely.extend(["mat3", "vec3"]);
-            } else if has(&["matrix", "mvp", "projection", "modelview"]) || lower.ends_with("mat") {
+            } else if has(&["matrix", "matrices", "mvp", "projection", "modelview", "toworld", "toclip", "toview"])
+                || lower.ends_with("mat")
+            {
                 likely.push("mat4");
             } else if has(&["texcoord", "uv"]) {
                 likely.push("vec2");
@@ -168,8 +187,7 @@ impl Stubs {
         let code = scan::code(&text);
         let uses = scan::uses(&code);
         let is_given = |word: &str| {
-            definitions.iter().any(|(name, _)| name == word)
-                || dialect == Dialect::Glsl && WORDS.iter().any(|(own, _)| *own == word)
+            definitions.iter().any(|(name, _)| name == word) || host_words(dialect).iter().any(|(own, _)| *own == word)
         };
         for (ty, variables) in scan::unknown_types(&text, &code, dialect) {
             if !is_given(ty) {
@@ -183,7 +201,8 @@ impl Stubs {
         // Who reads HLSL says one name at a time, and is a process each time.
         if dialect == Dialect::Hlsl {
             for name in scan::undeclared(&text, &code, &uses) {
-                if !is_given(name) && !stubs.qualifiers.contains(name) {
+                let is_type = stubs.structures.iter().any(|(own, _)| own == name);
+                if !is_given(name) && !stubs.qualifiers.contains(name) && !is_type {
                     stubs.declare(name);
                 }
             }
@@ -272,8 +291,17 @@ impl Stubs {
         };
         // The columns of a matrix are elements too.
         let is_matrix = matches!(&ty, Ty::Guess(guess) if self.guesses[*guess].ty().starts_with("mat"));
-        self.variables.push(Field { name: name.to_owned(), is_array: is_array && !is_matrix, ty });
+        self.variables.push(Field {
+            name: name.to_owned(),
+            is_array: is_array && (!is_matrix || name.ends_with('s')),
+            ty,
+        });
         true
+    }
+
+    /// Enables an extension of WGSL; false if it is enabled.
+    pub(super) fn enable(&mut self, extension: &str) -> bool {
+        self.dialect == Dialect::Wgsl && self.qualifiers.insert(extension.to_owned())
     }
 
     /// Takes a word for nothing that a host defines, where it is no name of anything; false if it is known.
@@ -361,18 +389,18 @@ impl Stubs {
                 found.push(&format!("#define {name} {value}"), 0);
             }
             self.qualifiers.iter().for_each(|word| found.push(&format!("#define {word}"), 0));
+        } else {
+            self.qualifiers.iter().for_each(|word| found.push(&format!("enable {word};"), 0));
         }
         let mut text = self.own.text.clone();
         for (name, choice) in &self.functions {
             text = without_calls(&text, name, choice.map(|guess| self.guesses[guess].ty()));
         }
-        if self.dialect == Dialect::Glsl {
-            let code = scan::code(&text);
-            let used: BTreeSet<&str> = words(&text).collect();
-            for (word, definition) in WORDS {
-                if used.contains(word) && !scan::is_declared(&text, &code, word) {
-                    found.push(&format!("#define {definition}"), 0);
-                }
+        let code = scan::code(&text);
+        let used: BTreeSet<&str> = words(&text).collect();
+        for (word, definition) in host_words(self.dialect) {
+            if used.contains(word) && !scan::is_declared(&text, &code, word) {
+                found.push(&format!("#define {definition}"), 0);
             }
         }
         for (name, fields) in &self.structures {
