@@ -41,6 +41,8 @@ pub struct ShaderReading {
     zeroes_locals: bool,
     /// Whether statements that nobody reads are left out.
     pub(crate) is_partial: bool,
+    /// Whether functions are called that are not there.
+    pub(crate) lacks_functions: bool,
     places: Places,
 }
 
@@ -195,8 +197,8 @@ fn of_wgsl(path: &Path, own: Lines) -> Result<ShaderReading, ShaderError> {
     let given = (&vec![], false);
     let parsed = |lines: &Lines| parsed_wgsl(&lines.text);
     match repaired(&wgsl::plain(&own), given, Dialect::Wgsl, TURNS_OF_NAGA, &parsed) {
-        Ok(Repaired { read, lines, notes, is_partial }) => {
-            Ok(ShaderReading { notes, is_partial, ..reading(read, lines) })
+        Ok(Repaired { read, lines, notes, is_partial, lacks_functions }) => {
+            Ok(ShaderReading { notes, is_partial, lacks_functions, ..reading(read, lines) })
         }
         Err((line, message)) => {
             Err(ShaderError::Invalid { path: path.into(), line: (line > 0).then_some(line as usize), message })
@@ -237,6 +239,7 @@ impl ShaderReading {
             is_vertex: false,
             zeroes_locals: false,
             is_partial: false,
+            lacks_functions: false,
             places,
         }
     }
@@ -363,11 +366,25 @@ fn of_definitions(
     let given = (definitions, is_wrapped);
     let read = |text: &Lines| parsed(&text.text, stage);
     let said = match repaired(own, given, Dialect::Glsl, TURNS_OF_NAGA, &read) {
-        Ok(Repaired { read: (module, Normalised { text, roles, has_main }), lines, notes, is_partial }) => {
+        Ok(Repaired {
+            read: (module, Normalised { text, roles, has_main }),
+            lines,
+            notes,
+            is_partial,
+            lacks_functions,
+        }) => {
             let places = Places::Text(starts(&text), lines, PRELUDE_LINES);
             let own = ShaderReading::new(module, String::new(), "naga".into(), places);
             let is_vertex = stage == ShaderStage::Vertex;
-            return Ok(ShaderReading { notes, roles, has_entry: has_main, is_vertex, is_partial, ..own });
+            return Ok(ShaderReading {
+                notes,
+                roles,
+                has_entry: has_main,
+                is_vertex,
+                is_partial,
+                lacks_functions,
+                ..own
+            });
         }
         Err(said) => said,
     };
@@ -378,11 +395,11 @@ fn of_definitions(
     let read = |text: &Lines| by_glslang(&text.text, stage);
     // What naga says is plainer, as it is of the text itself.
     let own = repaired(own, given, Dialect::Glsl, TURNS_OF_GLSLANG, &read).map_err(|_| said)?;
-    let Repaired { read: (module, table, roles, has_main), lines, notes, is_partial } = own;
+    let Repaired { read: (module, table, roles, has_main), lines, notes, is_partial, lacks_functions } = own;
     let places = Places::Spirv(table, lines, PRELUDE_LINES + 1);
     let reading = ShaderReading::new(module, String::new(), "glslangValidator, through SPIR-V".into(), places);
     let is_vertex = stage == ShaderStage::Vertex;
-    Ok(ShaderReading { notes, roles, has_entry: has_main, is_vertex, is_partial, ..reading })
+    Ok(ShaderReading { notes, roles, has_entry: has_main, is_vertex, is_partial, lacks_functions, ..reading })
 }
 
 fn parsed(text: &str, stage: ShaderStage) -> Result<(Module, Normalised), Unread> {
@@ -603,12 +620,19 @@ fn of_hlsl(path: &Path, own: &Lines, options: &ReadOptions) -> Result<Vec<Shader
                 spirv::read(path, &bytes).map_err(|error| Unread::other(0, error.to_string()))
             };
             match repaired(&text, (&options.defines, false), Dialect::Hlsl, TURNS_OF_GLSLANG, &read) {
-                Ok(Repaired { read: (module, table), lines, notes: own_notes, is_partial }) => {
+                Ok(Repaired { read: (module, table), lines, notes: own_notes, is_partial, lacks_functions }) => {
                     let places = Places::Spirv(table, lines, 0);
                     let reader = format!("{}, through SPIR-V", own.name());
                     let reading = ShaderReading::new(module, "HLSL".into(), reader, places);
                     let notes = [&notes[..], &own_notes].concat();
-                    found.push(ShaderReading { notes, has_entry: !alone, is_vertex, is_partial, ..reading });
+                    found.push(ShaderReading {
+                        notes,
+                        has_entry: !alone,
+                        is_vertex,
+                        is_partial,
+                        lacks_functions,
+                        ..reading
+                    });
                     break;
                 }
                 Err(error) => drop(unread.get_or_insert(error)),

@@ -141,7 +141,7 @@ fn asked(text: &str) -> Asked {
 }
 
 /// Names that switch a step on.
-const STEPS: [&str; 5] = ["SPECULAR", "FOG", "LIGHT", "DIFFUSE", "GAMMA"];
+const STEPS: [&str; 6] = ["SPECULAR", "FOG", "LIGHT", "DIFFUSE", "GAMMA", "NORMAL"];
 /// Names that have such a word, and switch something else.
 const NO_STEPS: [&str; 9] = ["NO_", "AREA", "COUNT", "MAP", "TEXTURE", "CULLING", "DISABLE", "SHADOW", "_H"];
 
@@ -197,7 +197,10 @@ pub(super) fn configurations(text: &str, given: &[(String, String)]) -> Vec<(Str
     let switches: Definitions = asked
         .defined
         .iter()
-        .filter(|name| STEPS.iter().any(|own| name.contains(own)) && !NO_STEPS.iter().any(|own| name.contains(own)))
+        .filter(|name| {
+            let name = name.to_uppercase();
+            STEPS.iter().any(|own| name.contains(own)) && !NO_STEPS.iter().any(|own| name.contains(own))
+        })
         .map(|name| (name.clone(), "1".into()))
         .collect();
     if !switches.is_empty() {

@@ -45,6 +45,10 @@ impl Review<'_> {
                 let text = self.lower_names(id);
                 has_texture && ["norm", "bump", "nrm", "tangent", "texture"].iter().any(|word| text.contains(word))
             }
+            "blinn" => {
+                let is_cone = get("exponent").is_some_and(|own| self.lower_names(own).contains("spot"));
+                return Some(if is_cone { "spot" } else { "blinn" }.into());
+            }
             "attenuation" | "divisor" => self.is_attenuation(id, own, template),
             "spot" => self.is_spot(id, own, template),
             "schlick" => self.is_fresnel(id, own, template),
@@ -68,11 +72,11 @@ impl Review<'_> {
     }
 
     /// Whether nothing is done with a value but handing it on.
-    fn is_last(&self, id: NodeId, depth: u32) -> bool {
+    pub(super) fn is_last(&self, id: NodeId, depth: u32) -> bool {
         const MOST: u32 = 6;
         let hands_on = |own: &NodeId| {
             let keeps = match self.graph.op(*own) {
-                Op::Vector(_) | Op::Swizzle(..) | Op::Splat(_) => true,
+                Op::Vector(_) | Op::Swizzle(..) | Op::Splat(_) | Op::Negate(_) => true,
                 Op::Select(condition, ..) => *condition != id,
                 Op::Call(Function::Min | Function::Max, x) => self.held_part(x) == Some(id),
                 _ => false,
@@ -115,6 +119,10 @@ impl Review<'_> {
         let named = has(Role::Light) && has(Role::Normal);
         if template.head.is_weak {
             return (known == Some(true) || named) && way.is_factor && !self.is_clamped_elsewhere(id);
+        }
+        // A square in another formula is none of the cosine's own.
+        if template.name == "lambert_squared" && !way.is_linear {
+            return false;
         }
         if known == Some(true) {
             return true;
@@ -180,6 +188,11 @@ impl Review<'_> {
         if is_named || is_distance && mixes || mixes && ["dist", "depth", "far"].iter().any(|word| text.contains(word))
         {
             Some("fog".into())
+        } else if ["falloff", "atten", "light", "range"].iter().any(|word| text.contains(word))
+            && (is_distance || ["dist", "length"].iter().any(|word| text.contains(word)))
+            && !template.head.is_weak
+        {
+            Some("attenuation".into())
         } else if ["cutoff", "spot", "cone", "angle"].iter().any(|word| text.contains(word)) && !template.head.is_weak {
             Some("spot".into())
         } else {
@@ -275,7 +288,12 @@ impl Review<'_> {
     fn is_blend(&self, id: NodeId, own: &Match) -> bool {
         let (Some(a), Some(b)) = (self.bound(own, "color"), self.bound(own, "other")) else { return false };
         let text = self.lower_names(id);
-        let is_named = ["blend", "base", "src", "dst", "color", "tex", "col"].iter().any(|word| text.contains(word));
+        let words: &[&str] = match &*self.finder.template(own).name {
+            // Light is added to light everywhere.
+            "linear_dodge" => &["blend"],
+            _ => &["blend", "base", "src", "dst", "color", "tex", "col"],
+        };
+        let is_named = words.iter().any(|word| text.contains(word));
         let is_given = |own: NodeId| self.graph.constant_of(own).is_none();
         let is_mode = self.graph.ty(id) != Type::Float(1) || text.contains("blend");
         is_named && is_given(a) && is_given(b) && is_mode

@@ -141,6 +141,14 @@ impl Review<'_> {
                 claim.sentence = "Lambert's cosine n·l, used where it is above 0".into();
             }
         }
+        // What a vertex shader hands on may be held above 0 behind it.
+        if claim.name == "not-clamped"
+            && claim.verdict == StepVerdict::Mistake
+            && self.is_vertex
+            && self.is_last(site.id, 0)
+        {
+            claim.set(StepVerdict::Perhaps, "not-clamped", "; it is handed on as it is");
+        }
         let all = signs.get(&(self.core(n.id).0, self.core(l.id).0));
         let agree = all.is_none_or(|all| all.iter().all(|other| *other == own));
         if let Some(direction) = self.direction(l.id).filter(|_| agree) {
@@ -221,6 +229,12 @@ impl Review<'_> {
     /// A cone's axis points away from the light, and the light's vector towards it.
     fn claim_spot(&mut self, site: &Site, template: &Template, claim: &mut Claim) {
         let (Some(l), Some(axis)) = (Self::of(site, template, "l"), Self::of(site, template, "axis")) else { return };
+        if claim.name == "not-clamped" && self.is_compared(site) {
+            claim.verdict = StepVerdict::Dialect;
+            claim.name = "ramp".into();
+            claim.sentence =
+                "the spotlight's edge as a straight ramp of cosines, held within its limits by branches".into();
+        }
         // Which of the two is the axis, names say.
         let is_turned = self.named(l.id) == Role::Axis && self.named(axis.id) != Role::Axis;
         let (l, axis) = if is_turned { (axis, l) } else { (l, axis) };
@@ -234,6 +248,16 @@ impl Review<'_> {
         {
             claim.set(StepVerdict::Perhaps, "spot-backwards", "; the axis and the vector to the light point the same way: the cone opens away from what it should light");
         }
+    }
+
+    /// Whether a step stands in a branch on its own cosine.
+    fn is_compared(&self, site: &Site) -> bool {
+        let below = self.graph.all_of(site.id);
+        let cosines: Vec<NodeId> =
+            below.into_iter().filter(|own| matches!(self.graph.op(*own), Op::Call(Function::Dot, _))).collect();
+        self.conditions_of(site)
+            .iter()
+            .any(|(condition, _)| self.graph.all_of(*condition).iter().any(|own| cosines.contains(own)))
     }
 
     /// Whether a highlight stands in a branch on the cosine of its normal and another vector of it.

@@ -124,11 +124,21 @@ impl Reviewer {
         let outputs = graph.ids().filter(is_unused).map(|value| Output { name: String::new(), value }).collect();
         let (steps, _) = self.steps_of(graph, &[Root { name: String::new(), outputs }], reading);
         let is_new = |step: &ShaderStep| {
+            // A function that is not there may take it.
+            let is_length = step.kind == "length" && reading.lacks_functions;
             let is_step = !matches!(&*step.kind, "terms" | "value" | "length") && step.verdict != StepVerdict::Mistake;
-            is_step && known.iter().all(|own| own.line != step.line || own.kind != step.kind)
+            // v · 1/|v| is another form of what is used.
+            let is_inverse = step.kind == "attenuation" && step.name == "inverse";
+            (is_step && !is_inverse || is_length)
+                && known.iter().all(|own| own.line != step.line || own.kind != step.kind)
         };
         let told = |mut step: ShaderStep| {
-            step.sentence += "; it does not enter an output's arithmetic";
+            let taken = if reading.lacks_functions {
+                "; it goes into a function that is not there, or nowhere"
+            } else {
+                "; it does not enter an output's arithmetic"
+            };
+            step.sentence += taken;
             step
         };
         steps.into_iter().filter(is_new).map(told).collect()

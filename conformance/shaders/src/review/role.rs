@@ -73,7 +73,15 @@ impl Review<'_> {
                     matches!(self.graph.op(self.graph.without_sign(own).0), Op::Call(Function::Normalize, _))
                 };
                 let is_known = |own: NodeId| matches!(self.named(own), Role::Light | Role::Eye);
-                if is_unit(*a) && (is_unit(*b) || is_known(*b)) || is_unit(*b) && is_known(*a) {
+                let are_both = || {
+                    let of = [self.named(*a), self.named(*b)];
+                    let is_sum = matches!(self.graph.op(core), Op::Binary(Binary::Add, ..));
+                    is_sum
+                        && of.contains(&Role::Light)
+                        && of.contains(&Role::Eye)
+                        && !self.lower_names(core).contains("pos")
+                };
+                if is_unit(*a) && (is_unit(*b) || is_known(*b)) || is_unit(*b) && is_known(*a) || are_both() {
                     return Role::Half;
                 }
             }

@@ -34,6 +34,8 @@ pub(super) struct Way {
     pub(super) is_fog: bool,
     /// Whether it multiplies what is given, or is given itself.
     pub(super) is_factor: bool,
+    /// Whether there are sums, products and limits alone between it and what is given.
+    pub(super) is_linear: bool,
 }
 
 impl Way {
@@ -55,7 +57,7 @@ impl Review<'_> {
         self.sites.clear();
         let mut seen = HashSet::new();
         for output in roots.iter().flat_map(|root| &root.outputs) {
-            self.visit(output.value, &mut seen, &Way { is_factor: true, ..Way::default() });
+            self.visit(output.value, &mut seen, &Way { is_factor: true, is_linear: true, ..Way::default() });
         }
         while let Some(condition) = self.waiting.pop() {
             self.visit(condition, &mut seen, &Way::default());

@@ -42,6 +42,8 @@ fn inverse_square_held(offset: vec3f, k: f32) -> f32 { return 1.0 / max(dot(offs
 fn inverse_square_softened(offset: vec3f, k: f32, kc: f32) -> f32 { return k / (dot(offset, offset) + kc); }
 //@ attenuation right inverse: 1/d
 fn inverse(offset: vec3f) -> f32 { return 1.0 / length(offset); }
+//@ attenuation right inverse: 1/(k·d)
+fn inverse_by(offset: vec3f, k: f32) -> f32 { return 1.0 / (k * length(offset)); }
 //@ attenuation mistake distance-to-the-fourth: 1/d⁴ where 1/d² is due
 fn inverse_fourth(offset: vec3f) -> f32 { let q = dot(offset, offset); return 1.0 / (q * q); }
 //@ attenuation mistake quadratic-without-square: the quadratic coefficient is multiplied by d, not by d²

@@ -38,6 +38,8 @@ fn filmic(color: T) -> T { let x = max(color - 0.004, T(0.0)); return (x * (6.2 
 
 //@ blend right screen <f32 vec3f>: screen, 1 − (1 − a)(1 − b)
 fn screen(color: T, other: T) -> T { return T(1.0) - (T(1.0) - color) * (T(1.0) - other); }
+//@ blend right add <vec3f vec4f>: add, held below 1
+fn linear_dodge(color: T, other: T) -> T { return clamp(color + other, T(0.0), T(1.0)); }
 //@ blend right overlay <f32 vec3f>: overlay
 fn overlay(color: T, other: T) -> T { return select(T(1.0) - 2.0 * (T(1.0) - color) * (T(1.0) - other), 2.0 * color * other, color < T(0.5)); }
 //@ blend right color-dodge <f32 vec3f>: colour dodge

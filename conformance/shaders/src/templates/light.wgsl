@@ -62,6 +62,8 @@ fn normal_by_transposed(m: mat3x3f, normal: vec3f) -> vec3f { return transpose(m
 fn normal_decoded(color: vec3f) -> vec3f { return color * 2.0 - 1.0; }
 //@ decode-normal right: a normal decoded from a texture with a fourth component, 2c − 1
 fn normal_decoded_four(color: vec4f) -> vec4f { return color * 2.0 - 1.0; }
+//@ decode-normal right two-components: two components of a normal decoded from a texture, 2c − 1
+fn normal_decoded_part(color: vec3f) -> vec3f { return color * vec3f(2.0, 2.0, 0.0) - vec3f(1.0, 1.0, 0.0); }
 //@ decode-normal dialect of-bytes: a normal decoded from bytes, of which 128 is 0 and 255 is 1
 fn normal_decoded_bytes(color: vec3f) -> vec3f { return color * (255.0 / 127.0) - 128.0 / 127.0; }
 //@ decode-normal right of-bytes: a normal decoded from bytes, of which 128 is 0
@@ -85,3 +87,5 @@ fn schlick_grazing(f0: T, f90: T, c: f32) -> T { return f0 + (f90 - f0) * pow(1.
 fn schlick_rough(f0: vec3f, c: f32, share: f32) -> vec3f { return f0 + (max(vec3f(1.0 - share), f0) - f0) * pow(1.0 - c, 5.0); }
 //@ schlick dialect spherical-gaussian (Unreal): Schlick's Fresnel term by a power of two
 fn schlick_gaussian(f0: vec3f, c: f32) -> vec3f { return f0 + (vec3f(1.0) - f0) * exp2((-5.55473 * c - 6.98316) * c); }
+//@ schlick dialect spherical-gaussian (Unreal) <f32 vec3f>: Schlick's Fresnel term between two values by a power of two
+fn schlick_gaussian_grazing(f0: T, f90: T, c: f32) -> T { return f0 + (f90 - f0) * exp2((-5.55473 * c - 6.98316) * c); }

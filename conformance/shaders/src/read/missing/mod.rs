@@ -53,6 +53,8 @@ pub(super) struct Repaired<T> {
     pub(super) notes: Vec<String>,
     /// Whether something is left out.
     pub(super) is_partial: bool,
+    /// Whether functions are called that are not there.
+    pub(super) lacks_functions: bool,
 }
 
 /// Statements that are left out at most.
@@ -115,7 +117,15 @@ pub(super) fn repaired<T>(
     for _ in 0..turns {
         let (lines, before) = stubs.text(definitions, is_wrapped);
         let unread = match read(&lines) {
-            Ok(read) => return Ok(Repaired { read, lines, notes: stubs.notes(), is_partial: stubs.cuts > 0 }),
+            Ok(read) => {
+                return Ok(Repaired {
+                    read,
+                    lines,
+                    notes: stubs.notes(),
+                    is_partial: stubs.cuts > 0,
+                    lacks_functions: stubs.lacks_functions(),
+                });
+            }
             Err(unread) => unread,
         };
         let place = unread.line.saturating_sub(before);

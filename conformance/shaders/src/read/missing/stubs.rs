@@ -107,6 +107,31 @@ fn is_swizzle(word: &str) -> bool {
     word.len() <= 4 && ["xyzw", "rgba", "stpq"].iter().any(|set| word.chars().all(|c| set.contains(c)))
 }
 
+/// Types that a name makes likely.
+fn by_name(name: &str, dialect: Dialect) -> &'static [&'static str] {
+    let lower = name.to_lowercase();
+    let has = |of: &[&str]| of.iter().any(|word| lower.contains(word));
+    if has(&["samp"]) && dialect != Dialect::Glsl {
+        &["sampler"]
+    } else if lower.contains("normal") && has(&["toworld", "toview", "toeye", "mat"]) {
+        &["mat3", "mat4"]
+    } else if lower.ends_with("tbn") {
+        &["mat3", "vec3"]
+    } else if has(&["matrix", "matrices", "mvp", "projection", "modelview", "toworld", "toclip", "toview"])
+        || lower.ends_with("mat")
+    {
+        &["mat4"]
+    } else if lower.ends_with("vertex") || lower.ends_with("position") {
+        &["vec3", "vec4"]
+    } else if has(&["texcoord", "uv"]) {
+        &["vec2"]
+    } else if has(&["color", "colour", "normal", "dir", "pos", "albedo", "diffuse", "ambient", "specular", "eye"]) {
+        &["vec3", "float"]
+    } else {
+        &[]
+    }
+}
+
 /// Types in the order in which they are tried, of something with a name.
 fn order(name: &str, chains: &[Chain<'_, '_>], dialect: Dialect) -> Vec<String> {
     let mut likely: Vec<&str> = vec![];
@@ -117,7 +142,9 @@ fn order(name: &str, chains: &[Chain<'_, '_>], dialect: Dialect) -> Vec<String> 
         if fields.is_empty() {
             likely.extend(of.declares.filter(|ty| is_type(ty)));
             let word = of.before[1].strip_suffix("Lod").unwrap_or(of.before[1]);
+            let is_alone = matches!(of.after, ")" | ",");
             likely.extend(match (word, of.before[2]) {
+                _ if !is_alone => None,
                 ("normalize" | "reflect" | "cross" | "refract" | "dot" | "distance", "(") => Some("vec3"),
                 ("transpose" | "inverse" | "mat3", "(") => Some("mat4"),
                 (own, "(") if own.starts_with("texture") || own.starts_with("tex2D") => Some("sampler2D"),
@@ -136,27 +163,7 @@ fn order(name: &str, chains: &[Chain<'_, '_>], dialect: Dialect) -> Vec<String> 
         Some(2) if is_bare => likely.extend(["vec3", "vec4"]),
         Some(1) if is_bare => likely.extend(["vec2", "vec3"]),
         Some(_) => likely.extend(["vec4", "vec3", "vec2"]),
-        None => {
-            let lower = name.to_lowercase();
-            let has = |of: &[&str]| of.iter().any(|word| lower.contains(word));
-            if has(&["samp"]) && dialect != Dialect::Glsl {
-                likely.push("sampler");
-            } else if lower.contains("normal") && has(&["toworld", "toview", "toeye", "mat"]) {
-                likely.extend(["mat3", "mat4"]);
-            } else if lower.ends_with("tbn") {
-                likely.extend(["mat3", "vec3"]);
-            } else if has(&["matrix", "matrices", "mvp", "projection", "modelview", "toworld", "toclip", "toview"])
-                || lower.ends_with("mat")
-            {
-                likely.push("mat4");
-            } else if has(&["texcoord", "uv"]) {
-                likely.push("vec2");
-            } else if has(&[
-                "color", "colour", "normal", "dir", "pos", "albedo", "diffuse", "ambient", "specular", "eye",
-            ]) {
-                likely.extend(["vec3", "float"]);
-            }
-        }
+        None => likely.extend(by_name(name, dialect)),
     }
     let mut found: Vec<String> = vec![];
     let rest = TYPES.iter().filter(|ty| **ty != "sampler" || dialect != Dialect::Glsl);
@@ -311,6 +318,11 @@ impl Stubs {
         let is_free =
             self.dialect != Dialect::Wgsl && !scan::is_declared(&self.own.text, &code, word) && !word.is_empty();
         stands_alone && is_free && self.qualifiers.insert(word.to_owned())
+    }
+
+    /// Whether functions of several arguments, or of none of their value, are called that are not there.
+    pub(super) fn lacks_functions(&self) -> bool {
+        self.functions.iter().any(|(_, choice)| choice.is_none_or(|guess| self.guesses[guess].ty() != PASSES))
     }
 
     /// Stands for a function; false if it stands for it already, or the text has one of this name.
