@@ -293,6 +293,36 @@ fn what_is_not_used_is_told_so_and_what_ends_a_turn_is_read() {
 }
 
 #[test]
+fn what_is_right_elsewhere_is_no_mistake_where_it_stands_for_something_else() {
+    // A shadow on a plane divides the same products; where a vertex comes to is not lit.
+    let shadow = "attribute vec3 aPosition;\nuniform vec3 uPlaneNormal, uPlane, uLightLocation;\nvoid main() {\n  vec3 v = aPosition;\n  vec3 on = uLightLocation + (v - uLightLocation) * (dot(uPlaneNormal, uPlane - uLightLocation) / dot(uPlaneNormal, v - uLightLocation));\n  gl_Position = vec4(on, 1.0);\n}\n";
+    assert_eq!(steps("shadow.vert", shadow), [""; 0]);
+    // Which side a difference of two places points to, nobody knows.
+    let moved = "attribute vec3 aPosition, aNormal;\nuniform mat4 uM;\nuniform vec3 uLightLocation;\nvarying float lit;\nvoid main() {\n  vec3 n = normalize((uM * vec4(aPosition + aNormal, 1.0)).xyz - (uM * vec4(aPosition, 1.0)).xyz);\n  vec3 l = normalize(uLightLocation - (uM * vec4(aPosition, 1.0)).xyz);\n  lit = max(0.0, dot(n, l));\n  gl_Position = vec4(aPosition, 1.0);\n}\n";
+    let found = steps("moved.vert", moved);
+    assert!(found.iter().any(|step| step == "8 lambert right"), "{found:?}");
+    assert!(found.iter().all(|step| !step.contains("mistake")), "{found:?}");
+    // A square within another formula is none of the cosine's own.
+    let smith = "float smith(vec3 normal, vec3 light, float a) {\n  float c = max(dot(normal, light), 0.0);\n  return 2.0 * c / (c + sqrt(a + (1.0 - a) * c * c));\n}\n";
+    assert!(steps("smith.glsl", smith).iter().all(|step| !step.contains("mistake")));
+    // Of an atmosphere, more of it below is no lost sign.
+    let sky = "uniform float fScale, fInner;\nvarying float fHeight;\nfloat density() {\n  return exp(fScale * (fInner - fHeight));\n}\nvoid main() {\n  gl_FragColor = vec4(density());\n}\n";
+    assert!(steps("sky.fs", sky).iter().all(|step| !step.contains("mistake")));
+}
+
+#[test]
+fn what_has_no_value_is_not_guarded_by_a_limit() {
+    let text = |power: &str| {
+        format!(
+            "varying vec3 normal, toLight, toEye;\nvoid main() {{\n  vec3 n = normalize(normal);\n  vec3 h = normalize(normalize(toLight) + normalize(toEye));\n  gl_FragColor = vec4({power});\n}}\n"
+        )
+    };
+    let late = steps("late.fs", &text("max(0.0, pow(dot(n, h), 50.0))"));
+    assert_eq!(late, ["5 blinn mistake unguarded"]);
+    assert_eq!(steps("early.fs", &text("pow(max(dot(n, h), 0.0), 50.0)")), ["5 blinn right"]);
+}
+
+#[test]
 fn included_files_are_read_below_the_folders_that_are_given_and_nowhere_else() {
     let include = file("factor.h", "float factor(vec3 n, vec3 l) { return max(dot(n, l), 0.0); }\n");
     let folder = include.parent().expect("a folder").to_owned();

@@ -138,6 +138,8 @@ fn by_component<N: Float>(function: Function, [a, b, c]: [N; 3], arguments: usiz
     let (zero, one) = (N::zero(), N::one());
     match function {
         F::Abs => a.abs(),
+        // What is left open stays so: nobody guards by max(x, 0) what has no value.
+        F::Min | F::Max if a.is_nan() || b.is_nan() => N::nan(),
         F::Min => {
             if b < a {
                 b

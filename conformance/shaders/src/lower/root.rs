@@ -3,13 +3,15 @@
 use super::memory::{Pointer, State, Variable};
 use super::{Lowering, Symbol};
 use crate::graph::{NodeId, Origin};
-use naga::{Binding, Function, Handle, TypeInner};
+use naga::{Binding, BuiltIn, Function, Handle, TypeInner};
 
 /// A value that is given.
 #[derive(Debug)]
 pub(crate) struct Output {
     pub(crate) name: String,
     pub(crate) value: NodeId,
+    /// Whether it is a place, and no colour or what becomes one.
+    pub(crate) is_position: bool,
 }
 
 /// An entry point, or a function that nothing calls.
@@ -73,7 +75,10 @@ impl<'a> Lowering<'a> {
 
     fn spread(&self, name: &str, value: &Symbol, ty: Option<Handle<naga::Type>>, outputs: &mut Vec<Output>) {
         match value {
-            Symbol::Value(id) => outputs.push(Output { name: name.into(), value: *id }),
+            Symbol::Value(id) => {
+                let is_position = name.rsplit('.').next() == Some("gl_Position");
+                outputs.push(Output { name: name.into(), value: *id, is_position });
+            }
             Symbol::Parts(parts) => {
                 let members = ty.and_then(|ty| match &self.module.types[ty].inner {
                     TypeInner::Struct { members, .. } => Some(members),
@@ -83,7 +88,11 @@ impl<'a> Lowering<'a> {
                     let member = members.and_then(|members| members.get(k));
                     let own = member.and_then(|member| member.name.clone()).unwrap_or_else(|| k.to_string());
                     let name = if name.is_empty() { own } else { format!("{name}.{own}") };
+                    let before = outputs.len();
                     self.spread(&name, part, member.map(|member| member.ty), outputs);
+                    let is_position = member
+                        .is_some_and(|own| matches!(own.binding, Some(Binding::BuiltIn(BuiltIn::Position { .. }))));
+                    outputs[before..].iter_mut().for_each(|own| own.is_position |= is_position);
                 }
             }
             _ => {}

@@ -80,3 +80,29 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<(naga::Module, Table), S
 pub(super) fn line(table: &Table, place: usize) -> u32 {
     table[..table.partition_point(|(at, _)| *at <= place)].last().map_or(0, |(_, line)| *line)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_at_the_places_that_naga_gives() {
+        let op = |op: u32, operands: &[u32]| -> Vec<u32> {
+            let length = u32::try_from(operands.len() + 1).expect("few");
+            std::iter::once(length << 16 | op).chain(operands.iter().copied()).collect()
+        };
+        let name = u32::from_le_bytes(*b"m\0\0\0");
+        // Two variables of an entry point, a mode's three numbers and two parameters are not counted.
+        let words = [
+            vec![0; 5],
+            op(OP_ENTRY_POINT, &[4, 1, name, 7, 8]),
+            op(OP_EXECUTION_MODE, &[1, 17, 8, 8, 1]),
+            op(OP_TYPE_FUNCTION, &[2, 3, 4, 5]),
+            op(OP_LINE, &[9, 42, 0]),
+        ]
+        .concat();
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let at = 4 * (5 + 6 + 6 + 5 - 2 - 3 - 2);
+        assert_eq!(table(&bytes), [(at, 42)]);
+    }
+}

@@ -27,9 +27,13 @@ impl Review<'_> {
             "ramp" => return self.kind_of_ramp(id, get("x")?, template, way),
             "fog" => {
                 let text = self.lower_names(id);
-                ["fog", "densit", "mist", "haze"].iter().any(|word| text.contains(word))
+                let is_named = |words: &[&str]| words.iter().any(|word| text.contains(word));
+                // An exponential is much else: a mistake is claimed of what is called fog alone.
+                is_named(&["fog"])
+                    || way.is_fog
                     || self.is_of_root(id, "fog")
-                    || self.finder.distance(get("d")?) > 4
+                    || template.head.worth != Worth::Mistake
+                        && (is_named(&["densit", "mist", "haze"]) || self.finder.distance(get("d")?) > 4)
             }
             "mix" => return self.is_fog_mix(id, get("amount")?).then(|| "fog-mix".into()),
             "gamma" => self.is_gamma(id, get("power")),

@@ -76,6 +76,14 @@ impl Review<'_> {
         match &*head.kind {
             "lambert" => self.claim_lambert(site, template, signs, &mut claim),
             "phong" | "blinn" => self.claim_highlight(site, template, signs, &mut claim),
+            "lobe" if matches!(&*site.kind, "phong" | "blinn") => {
+                let normal = ["a", "b"]
+                    .into_iter()
+                    .find_map(|name| Self::of(site, template, name).copied().filter(|own| self.is_normal(own.id)));
+                if claim.verdict == StepVerdict::Right && normal.is_some_and(|n| self.is_gated(site, &n, true)) {
+                    claim.set(StepVerdict::Dialect, "gated", ", within a branch on n·l");
+                }
+            }
             "ramp" => self.claim_ramp(site, template, &mut claim),
             "divisor" => self.claim_divisor(site, &mut claim),
             "gamma" => self.claim_gamma(site, template, &mut claim),
@@ -151,7 +159,12 @@ impl Review<'_> {
         }
         let all = signs.get(&(self.core(n.id).0, self.core(l.id).0));
         let agree = all.is_none_or(|all| all.iter().all(|other| *other == own));
-        if let Some(direction) = self.direction(l.id).filter(|_| agree) {
+        // Which side the difference of two places or a cross product points to, nobody knows.
+        let is_sided = !matches!(
+            self.graph.op(self.core(n.id).0),
+            Op::Binary(Binary::Subtract, ..) | Op::Call(Function::Cross, _)
+        );
+        if let Some(direction) = self.direction(l.id).filter(|_| agree && is_sided) {
             // Both sides of a thin thing may be lit.
             let both = matches!(&*template.head.name, "incidence-of-both-sides");
             // The core's direction counts its sign already: the bound value's own sign does not come again.
@@ -166,7 +179,7 @@ impl Review<'_> {
         let of = |name: &str| Self::of(site, template, name).copied();
         if let Some(n) = of("n")
             && claim.verdict == StepVerdict::Right
-            && self.is_gated(site, &n)
+            && self.is_gated(site, &n, false)
         {
             claim.set(StepVerdict::Dialect, "gated", ", within a branch on n·l");
         }
@@ -175,6 +188,10 @@ impl Review<'_> {
             && let Some(k) = self.graph.number_of(a).or(self.graph.number_of(b))
         {
             claim.sentence += &format!("; the exponent is scaled by {k}");
+        }
+        let is_seen_along = claim.name == "viewer-at-infinity" && of("v").is_none();
+        if is_seen_along && of("l").is_some_and(|own| self.named(own.id) == Role::Eye) {
+            claim.set(StepVerdict::Right, "", "; it is the light that shines along a fixed direction");
         }
         let (Some(n), Some(a), Some(b)) = (of("n"), of("l"), of("v")) else { return };
         let core = self.core(n.id).0;
@@ -261,7 +278,8 @@ impl Review<'_> {
     }
 
     /// Whether a highlight stands in a branch on the cosine of its normal and another vector of it.
-    fn is_gated(&self, site: &Site, n: &Bound) -> bool {
+    /// Where the highlight's light is not known, any other vector.
+    fn is_gated(&self, site: &Site, n: &Bound, by_any: bool) -> bool {
         let normal = self.core(n.id).0;
         let others: Vec<NodeId> =
             site.matched.bound.iter().map(|own| self.core(own.id).0).filter(|own| *own != normal).collect();
@@ -269,7 +287,8 @@ impl Review<'_> {
             self.graph.all_of(*condition).iter().any(|own| match self.graph.op(*own) {
                 Op::Call(Function::Dot, x) => {
                     let (a, b) = (self.core(x[0]).0, self.core(x[1]).0);
-                    a == normal && others.contains(&b) || b == normal && others.contains(&a)
+                    let is_other = |own: &NodeId| others.contains(own) != by_any;
+                    a == normal && is_other(&b) || b == normal && is_other(&a)
                 }
                 _ => false,
             })

@@ -121,7 +121,11 @@ impl Reviewer {
             roots.iter().flat_map(|root| &root.outputs).flat_map(|own| graph.all_of(own.value)).collect();
         let operands: HashSet<_> = graph.ids().flat_map(|id| graph.op(id).operands()).collect();
         let is_unused = |id: &NodeId| !used.contains(id) && !operands.contains(id) && graph.ty(*id).is_float();
-        let outputs = graph.ids().filter(is_unused).map(|value| Output { name: String::new(), value }).collect();
+        let outputs = graph
+            .ids()
+            .filter(is_unused)
+            .map(|value| Output { name: String::new(), value, is_position: false })
+            .collect();
         let (steps, _) = self.steps_of(graph, &[Root { name: String::new(), outputs }], reading);
         let is_new = |step: &ShaderStep| {
             // A function that is not there may take it.

@@ -56,7 +56,7 @@ impl Review<'_> {
     pub(super) fn visit_all(&mut self, roots: &[Root]) {
         self.sites.clear();
         let mut seen = HashSet::new();
-        for output in roots.iter().flat_map(|root| &root.outputs) {
+        for output in roots.iter().flat_map(|root| &root.outputs).filter(|own| !own.is_position) {
             self.visit(output.value, &mut seen, &Way { is_factor: true, is_linear: true, ..Way::default() });
         }
         while let Some(condition) = self.waiting.pop() {

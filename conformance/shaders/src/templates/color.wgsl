@@ -36,21 +36,21 @@ fn uncharted(color: T) -> T { return (color * (0.15 * color + 0.05) + 0.004) / (
 //@ tone dialect filmic (Hejl and Burgess-Dawson 2010) <f32 vec3f>: Hejl's curve, encoded already
 fn filmic(color: T) -> T { let x = max(color - 0.004, T(0.0)); return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06); }
 
-//@ blend right screen <f32 vec3f>: screen, 1 − (1 − a)(1 − b)
+//@ blend right screen <f32 vec3f vec4f>: screen, 1 − (1 − a)(1 − b)
 fn screen(color: T, other: T) -> T { return T(1.0) - (T(1.0) - color) * (T(1.0) - other); }
 //@ blend right add <vec3f vec4f>: add, held below 1
 fn linear_dodge(color: T, other: T) -> T { return clamp(color + other, T(0.0), T(1.0)); }
-//@ blend right overlay <f32 vec3f>: overlay
+//@ blend right overlay <f32 vec3f vec4f>: overlay
 fn overlay(color: T, other: T) -> T { return select(T(1.0) - 2.0 * (T(1.0) - color) * (T(1.0) - other), 2.0 * color * other, color < T(0.5)); }
-//@ blend right color-dodge <f32 vec3f>: colour dodge
+//@ blend right color-dodge <f32 vec3f vec4f>: colour dodge
 fn dodge(color: T, other: T) -> T { return min(color / (T(1.0) - other), T(1.0)); }
-//@ blend right color-burn <f32 vec3f>: colour burn
+//@ blend right color-burn <f32 vec3f vec4f>: colour burn
 fn burn(color: T, other: T) -> T { return max(T(1.0) - (T(1.0) - color) / other, T(0.0)); }
-//@ blend right soft-light (Photoshop) <f32 vec3f>: soft light
+//@ blend right soft-light (Photoshop) <f32 vec3f vec4f>: soft light
 fn soft_light(color: T, other: T) -> T { return select(sqrt(color) * (2.0 * other - T(1.0)) + 2.0 * color * (T(1.0) - other), 2.0 * color * other + color * color * (T(1.0) - 2.0 * other), other < T(0.5)); }
-//@ blend right soft-light (Pegtop) <f32 vec3f>: soft light
+//@ blend right soft-light (Pegtop) <f32 vec3f vec4f>: soft light
 fn soft_light_pegtop(color: T, other: T) -> T { return (T(1.0) - 2.0 * other) * color * color + 2.0 * color * other; }
-//@ blend right exclusion <f32 vec3f>: exclusion, a + b − 2ab
+//@ blend right exclusion <f32 vec3f vec4f>: exclusion, a + b − 2ab
 fn exclusion(color: T, other: T) -> T { return color + other - 2.0 * color * other; }
 
 //@ interpolation right <f32 vec3f vec4f>: interpolation by barycentric weights

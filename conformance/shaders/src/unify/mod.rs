@@ -190,6 +190,9 @@ impl<'a> Finder<'a> {
         }
         self.lengths_fit(template, &bound).then_some(())?;
         score -= self.dependence(template, &bound);
+        if template.head.worth == Worth::Mistake && self.has_part(template, &bound) {
+            return None;
+        }
         // Larger cuts explain less.
         score -= 3 * i64::try_from(bound.len()).unwrap_or(0);
         score += match template.head.worth {
@@ -224,6 +227,10 @@ impl<'a> Finder<'a> {
                     (Length::Open, true) => 4,
                     (Length::NotOne, true) => -6,
                 };
+            }
+            // Four components that are put together are another form.
+            Class::Vector if self.graph.ty(id) == Type::Float(4) && matches!(self.graph.op(id), Op::Vector(_)) => {
+                return None;
             }
             Class::Exponent => {
                 // A reciprocal exponent is a mistake of its own.
@@ -294,6 +301,15 @@ impl<'a> Finder<'a> {
             || lengths.1 == Length::One
             || lengths == (Length::Open, Length::Open)
             || !bound.iter().any(|own| own.by_length)
+    }
+
+    /// Whether one number is made of another: what is wrong with a form may then be made good within it.
+    fn has_part(&self, template: &Template, bound: &[Bound]) -> bool {
+        let is_number = |slot: usize| matches!(template.parameters[slot].1, Class::Positive | Class::Cosine);
+        bound.iter().enumerate().filter(|(slot, _)| is_number(*slot)).any(|(i, a)| {
+            let below = self.graph.all_of(a.id);
+            bound.iter().enumerate().any(|(j, b)| j != i && is_number(j) && below.binary_search(&b.id).is_ok())
+        })
     }
 
     /// Parameters are independent of each other where they can be.
