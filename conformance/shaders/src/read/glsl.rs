@@ -408,7 +408,8 @@ fn variables(tokens: &[Token<'_>], role: Role, out: &mut Normalised) {
     let (mut depth, mut is_name, mut ty) = (0_usize, false, "");
     for token in tokens {
         match *token {
-            Token::Word(word) if depth == 0 && ty.is_empty() && INTERPOLATION.contains(&word) => continue,
+            Token::Word(word)
+                if depth == 0 && ty.is_empty() && (word == "uniform" || INTERPOLATION.contains(&word)) => {}
             Token::Word(word) if depth == 0 && ty.is_empty() => {
                 ty = word;
                 is_name = true;

@@ -184,6 +184,7 @@ pub(super) fn mended(own: &Lines, notes: &mut Vec<String>) -> Lines {
             kept = line.char_indices().map(inside).collect();
         }
         at += line.len() + 1;
+        kept = without_places(&kept);
         if is_of_a_host(&kept) {
             notes.push(format!("line {number}: `{}` is no directive of GLSL, and left out", kept.trim()));
             kept = String::new();
@@ -218,6 +219,15 @@ pub(super) fn mended(own: &Lines, notes: &mut Vec<String>) -> Lines {
         }
     }
     found
+}
+
+/// A line of which the places that another language fills are numbers: `${COUNT}`.
+pub(super) fn without_places(line: &str) -> String {
+    let mut line = line.to_owned();
+    while let Some((start, end)) = line.find("${").and_then(|at| Some((at, line[at..].find('}')? + at + 1))) {
+        line.replace_range(start..end, "1");
+    }
+    line
 }
 
 /// Whether a line is a directive that no shader's preprocessor knows.

@@ -49,11 +49,12 @@ pub(super) fn plain(own: &Lines) -> Lines {
 
 /// A line without what hosts and earlier drafts wrote.
 fn today(line: &str) -> String {
-    let mut line = line
+    let line = line
         .replace("::", "_")
         .replace("@stage(fragment)", "@fragment")
         .replace("@stage(vertex)", "@vertex")
         .replace("<push_constant>", "<immediate>");
+    let mut line = super::hosts::without_places(&line);
     while let Some((start, end)) = line.find("#{").and_then(|at| Some((at, line[at..].find('}')? + at + 1))) {
         line.replace_range(start..end, "0");
     }

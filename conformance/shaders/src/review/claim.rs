@@ -94,10 +94,17 @@ impl Review<'_> {
         if head.name == "unguarded" {
             self.claim_unguarded(site, &mut claim);
         }
+        // The way from the light is the sum of two vectors too.
+        let is_cone = site.kind == "spot" && matches!(&*head.kind, "phong" | "blinn");
+        if is_cone {
+            claim.sentence = "the spotlight's cone with an exponent".into();
+        }
         if site.kind == "fog" {
             self.claim_distance(site, template, &mut claim);
         }
-        self.claim_lengths(site, template, &mut claim);
+        if !is_cone {
+            self.claim_lengths(site, template, &mut claim);
+        }
         let line = self.line_of(site.id);
         let also = self.lines_of(site.id).into_iter().filter(|own| *own != line).collect();
         let kind = if site.kind == "divisor" { "attenuation".into() } else { site.kind.clone() };

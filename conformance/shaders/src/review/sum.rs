@@ -221,8 +221,14 @@ impl Review<'_> {
             ));
         }
         if !diffuse.is_empty() && !shine.is_empty() {
-            let attenuated = |terms: &[&Term]| terms.iter().any(|term| self.is_attenuated(term));
-            match (attenuated(&diffuse), attenuated(&shine)) {
+            // Whether none of these terms is attenuated, and one of the others of the same light is: other branches are other lights.
+            let lacks = |own: &[&Term], others: &[&Term]| {
+                let is_mate = |term: &&&Term| own.iter().any(|one| Self::is_in_a_branch_of(one, term));
+                own.iter().all(|term| !self.is_attenuated(term))
+                    && others.iter().filter(is_mate).any(|term| self.is_attenuated(term))
+                    && others.iter().filter(is_mate).all(|term| self.is_attenuated(term))
+            };
+            match (lacks(&shine, &diffuse), lacks(&diffuse, &shine)) {
                 (true, false) => said.push((
                     Mistake,
                     "specular-not-attenuated",
@@ -264,6 +270,15 @@ impl Review<'_> {
             ));
         }
         said
+    }
+
+    /// Whether the conditions of one of two terms are among those of the other.
+    fn is_in_a_branch_of(a: &Term, b: &Term) -> bool {
+        let conditions = |term: &Term| -> Vec<Factor> {
+            term.iter().copied().filter(|factor| matches!(factor, Factor::Where(..))).collect()
+        };
+        let (a, b) = (conditions(a), conditions(b));
+        a.iter().all(|own| b.contains(own)) || b.iter().all(|own| a.contains(own))
     }
 
     fn has_origin(&self, term: &Term, origin: Origin) -> bool {
