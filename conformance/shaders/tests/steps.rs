@@ -311,6 +311,33 @@ fn what_is_right_elsewhere_is_no_mistake_where_it_stands_for_something_else() {
 }
 
 #[test]
+fn a_steep_ramp_is_no_edge_and_terms_of_other_lights_are_no_measure() {
+    let head = "varying vec3 normal, at;\nuniform vec3 lightPos, spotDirection, sunDirection, halfVector;\nuniform float isSun, kc, kl, kq;\n";
+    let ramp = format!(
+        "{head}void main() {{\n  vec3 l = normalize(lightPos - at);\n  float angle = dot(vec3(0.0, -1.0, 0.0), -l);\n  float inten = clamp((angle - 0.9) / (0.95 - 0.9), 0.0, 1.0);\n  gl_FragColor = vec4(inten * max(dot(normalize(normal), l), 0.0));\n}}\n"
+    );
+    let found = steps("steep.fs", &ramp);
+    assert!(found.iter().any(|step| step == "7 spot dialect ramp") && found.len() == 2, "{found:?}");
+    let edge = ramp.replace("clamp((angle - 0.9) / (0.95 - 0.9), 0.0, 1.0)", "(angle > 0.9 ? 1.0 : 0.0)");
+    assert!(steps("edge.fs", &edge).iter().any(|step| step.contains("spot right")), "{:?}", steps("edge.fs", &edge));
+    // The sun is not attenuated, and the lamp is: neither lacks anything.
+    let lambert = |l: &str| format!("lightColor * max(dot(n, normalize({l})), 0.0)");
+    let fading = "float d = length(lightPos - at); float fade = 1.0 / (kc + kl * d + kq * d * d);";
+    let shine = "lightColor * pow(max(dot(n, normalize(halfVector)), 0.0), 8.0)";
+    let text = |first: &str| {
+        format!(
+            "{head}uniform vec3 lightColor;\nvoid main() {{\n  vec3 n = normalize(normal), color = vec3(0.0);\n  {fading}\n  if (isSun == 1.0) {{ color += {first} + {shine}; }}\n  else {{ color += {} * fade; }}\n  gl_FragColor = vec4(color, 1.0);\n}}\n",
+            lambert("lightPos - at")
+        )
+    };
+    let found = steps("lights.fs", &text(&lambert("sunDirection")));
+    assert!(found.iter().all(|step| !step.contains("mistake")), "{found:?}");
+    // Of one light it does.
+    let found = steps("lacks.fs", &text(&(lambert("lightPos - at") + " * fade")));
+    assert!(found.iter().any(|step| step.contains("terms mistake specular-not-attenuated")), "{found:?}");
+}
+
+#[test]
 fn what_has_no_value_is_not_guarded_by_a_limit() {
     let text = |power: &str| {
         format!(

@@ -39,6 +39,8 @@ pub(crate) const PRELUDE_LINES: usize = 1;
 
 /// What samples a texture: the texture is the value that it gives.
 const SAMPLE: &str = "lightmeter_texture";
+/// What asks a texture's size.
+const SIZE: &str = "lightmeter_size";
 /// What combines a texture and a sampler.
 const COMBINE: &str = "lightmeter_combined";
 /// The output of versions that have no other.
@@ -52,7 +54,7 @@ const RESERVED: [&str; 10] =
 /// The names that people wrote, in a message or as a name.
 #[must_use]
 pub fn shown(text: &str) -> String {
-    text.replace(COLOR, "gl_FragColor").replace(AS_NAME, "").replace(SAMPLE, "texture")
+    text.replace(COLOR, "gl_FragColor").replace(AS_NAME, "").replace(SAMPLE, "texture").replace(SIZE, "textureSize")
 }
 const HELPERS: &str = "vec4 lightmeter_texture(vec4 t, vec2 at) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at) { return t; } \
     vec4 lightmeter_texture(vec4 t, vec2 at, float bias) { return t; } vec4 lightmeter_texture(vec4 t, vec3 at, float bias) { return t; } \
@@ -63,7 +65,9 @@ const HELPERS: &str = "vec4 lightmeter_texture(vec4 t, vec2 at) { return t; } ve
     vec4 lightmeter_texture(vec4 t, vec3 at, vec3 dx, vec3 dy) { return t; } vec4 lightmeter_texture(vec4 t, vec2 at, float level, ivec2 by) { return t; } \
     float lightmeter_texture(float t, vec3 at) { return t; } float lightmeter_texture(float t, vec4 at) { return t; } \
     float lightmeter_texture(float t, vec3 at, float level) { return t; } vec4 lightmeter_combined(vec4 t, float s) { return t; } \
-    vec4 lightmeter_combined(vec4 t, vec4 s) { return t; } float lightmeter_combined(float t, float s) { return t; } ";
+    vec4 lightmeter_combined(vec4 t, vec4 s) { return t; } float lightmeter_combined(float t, float s) { return t; } \
+    ivec2 lightmeter_size(vec4 t) { return ivec2(int(t.x), int(t.y)); } ivec2 lightmeter_size(vec4 t, int l) { return ivec2(int(t.x), int(t.y)); } \
+    ivec2 lightmeter_size(float t, int l) { return ivec2(int(t)); } ";
 
 /// Built-in functions that sample.
 const SAMPLING: [&str; 21] = [
@@ -352,6 +356,7 @@ fn is_own_name(word: &str, next: Option<&Token<'_>>) -> bool {
 fn renamed(word: &str, is_called: bool) -> &str {
     match word {
         _ if is_called && SAMPLING.contains(&word) => SAMPLE,
+        "textureSize" | "imageSize" if is_called => SIZE,
         "sampler2D" | "samplerCube" | "sampler2DShadow" | "samplerCubeShadow" if is_called => COMBINE,
         "gl_FragColor" | "gl_FragData" => COLOR,
         "highp" | "mediump" | "lowp" => "",

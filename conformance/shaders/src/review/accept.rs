@@ -214,7 +214,7 @@ impl Review<'_> {
         below.iter().any(|own| self.sites.get(own).is_some_and(|site| site.kind == "fog"))
             || ["fog", "visib", "haze", "mist"].iter().any(|word| self.lower_names(id).contains(word))
             || below.iter().any(|own| {
-                matches!(self.graph.op(*own), Op::Call(Function::Exp | Function::Exp2, _))
+                matches!(self.graph.op(*own), Op::Call(Function::Exp, _))
                     && self.graph.all_of(*own).iter().any(|inner| self.finder.distance(*inner) > 4)
             })
     }
@@ -294,7 +294,7 @@ impl Review<'_> {
         let text = self.lower_names(id);
         let words: &[&str] = match &*self.finder.template(own).name {
             // Light is added to light everywhere.
-            "linear_dodge" => &["blend"],
+            name if name.starts_with("linear_dodge") => &["blend"],
             _ => &["blend", "base", "src", "dst", "color", "tex", "col"],
         };
         let is_named = words.iter().any(|word| text.contains(word));

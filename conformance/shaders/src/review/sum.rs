@@ -64,7 +64,10 @@ impl Review<'_> {
                     found.extend(right.iter().take(MOST_TERMS).map(|other| [&*factors, own, other].concat()));
                 }
             }
-            Op::Binary(Binary::Divide, a, b) => self.expand(a, with(&factors, Factor::Over(b)), found, depth + 1),
+            Op::Binary(Binary::Divide, a, b) => {
+                let divisor = if let Op::Splat(inner) = graph.op(b) { *inner } else { b };
+                self.expand(a, with(&factors, Factor::Over(divisor)), found, depth + 1);
+            }
             Op::Splat(a) => self.expand(a, factors, found, depth + 1),
             Op::Call(Function::Min | Function::Max, x) if self.held_part(&x).is_some() => {
                 let inner = self.held_part(&x).unwrap_or(id);

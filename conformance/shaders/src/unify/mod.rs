@@ -189,6 +189,11 @@ impl<'a> Finder<'a> {
             bound.push(Bound { id: node, is_negated: form.negated[slot], by_length });
         }
         self.lengths_fit(template, &bound).then_some(())?;
+        // A steep ramp is no edge, however few values lie on it.
+        let is_edge = ["spot_hard", "spot_gate", "spot_turned"].iter().any(|name| template.name.starts_with(name));
+        if is_edge && !self.has_edge(id, cut, &bound) {
+            return None;
+        }
         score -= self.dependence(template, &bound);
         if template.head.worth == Worth::Mistake && self.has_part(template, &bound) {
             return None;
@@ -301,6 +306,22 @@ impl<'a> Finder<'a> {
             || lengths.1 == Length::One
             || lengths == (Length::Open, Length::Open)
             || !bound.iter().any(|own| own.by_length)
+    }
+
+    /// Whether something is chosen by vectors of a match.
+    fn has_edge(&self, id: NodeId, cut: &Cut, bound: &[Bound]) -> bool {
+        let vectors: Vec<NodeId> =
+            bound.iter().map(|own| own.id).filter(|own| self.graph.ty(*own) == Type::Float(3)).take(2).collect();
+        let depends = |own: NodeId| {
+            let below = self.graph.all_of(own);
+            vectors.iter().all(|vector| below.binary_search(vector).is_ok())
+        };
+        let chooses = |own: &NodeId| match self.graph.op(*own) {
+            Op::Call(Function::Step, _) => depends(*own),
+            Op::Binary(op, ..) => op.compares() && depends(*own),
+            _ => false,
+        };
+        self.graph.cone(id, cut, MOST_OPERATIONS).is_some_and(|cone| cone.iter().any(chooses))
     }
 
     /// Whether one number is made of another: what is wrong with a form may then be made good within it.
