@@ -7,6 +7,7 @@ mod compiler;
 mod complete;
 mod error;
 mod glsl;
+mod hlsl;
 mod hosts;
 mod lines;
 mod macros;
