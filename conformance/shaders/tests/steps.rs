@@ -263,6 +263,20 @@ fn what_nobody_reads_is_left_out_and_said_and_no_term_is_missed_then() {
 }
 
 #[test]
+fn a_function_that_is_not_there_may_set_what_it_is_given() {
+    let text = |call: &str| {
+        format!(
+            "varying vec3 normal;\nuniform vec3 toLight;\nvoid main() {{\n  vec3 t;\n  {call}\n  gl_FragColor = vec4(t * max(dot(normalize(normal), toLight), 0.0), 1.0);\n}}\n"
+        )
+    };
+    let verdict = |call: &str| {
+        steps("given.fs", &text(call)).into_iter().find(|step| step.contains("value")).expect("it is told")
+    };
+    assert!(verdict("basis(normal, t);").contains("perhaps"));
+    assert!(verdict("").contains("mistake"));
+}
+
+#[test]
 fn shaders_are_read_as_hosts_wrap_them() {
     let lit = "gl_FragColor = vec4(max(dot(normalize(normal), toLight), 0.0));";
     let head = "varying vec3 normal;\nuniform vec3 toLight;\n";

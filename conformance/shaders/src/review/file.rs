@@ -151,9 +151,10 @@ impl Reviewer {
     fn steps_of(&self, graph: &Graph, roots: &[Root], reading: &ShaderReading) -> (Vec<ShaderStep>, Vec<ShaderSum>) {
         let mut review = Review::new(graph, &self.library, reading.is_vertex());
         review.roots(roots);
-        // What is left out might be what is missing.
-        if reading.is_partial {
-            let of_sums = review.steps.iter_mut().filter(|step| matches!(&*step.kind, "terms" | "value"));
+        // What is left out might be what is missing, and a function that is not there may set what it is given.
+        if reading.is_partial || reading.lacks_functions {
+            let is_open = |step: &&mut ShaderStep| step.kind == "value" || step.kind == "terms" && reading.is_partial;
+            let of_sums = review.steps.iter_mut().filter(is_open);
             of_sums
                 .filter(|step| step.verdict == StepVerdict::Mistake)
                 .for_each(|step| step.verdict = StepVerdict::Perhaps);

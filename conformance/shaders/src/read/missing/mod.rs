@@ -1,7 +1,7 @@
-//! Texts that use what they do not declare, or what nobody reads: it is stubbed or left out, and said.
+//! Makes a piece of a shader readable: stubs for what it uses and does not declare, and without the statements that no reader accepts.
 //!
-//! Who reads a text says what is missing, one thing at a time. A name gets a type by what is asked of it; where this does not fit on a line,
-//! the other types are tried. What still is not read is left out by the statement.
+//! The reader (naga or a compiler) reports one missing thing at a time. A name gets a type from how it is used; if the line is then refused, the
+//! other types are tried. If none fits, the statement is left out. Each stub and each omission is a note in the report.
 
 mod cut;
 mod dialect;

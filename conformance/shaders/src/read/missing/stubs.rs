@@ -176,7 +176,7 @@ fn order(name: &str, chains: &[Chain<'_, '_>], dialect: Dialect) -> Vec<String> 
 }
 
 impl Stubs {
-    /// Of types and qualifiers that nobody declares; what else is missing is told by who reads the text.
+    /// Stubs for the types and qualifiers that a text does not declare. Other names follow as the reader reports them.
     pub(super) fn of(own: &Lines, definitions: &Definitions, dialect: Dialect) -> Self {
         let mut stubs = Self {
             dialect,
