@@ -312,15 +312,15 @@ fn what_is_right_elsewhere_is_no_mistake_where_it_stands_for_something_else() {
     let shadow = "attribute vec3 aPosition;\nuniform vec3 uPlaneNormal, uPlane, uLightLocation;\nvoid main() {\n  vec3 v = aPosition;\n  vec3 on = uLightLocation + (v - uLightLocation) * (dot(uPlaneNormal, uPlane - uLightLocation) / dot(uPlaneNormal, v - uLightLocation));\n  gl_Position = vec4(on, 1.0);\n}\n";
     assert_eq!(steps("shadow.vert", shadow), [""; 0]);
     // Which side a difference of two places points to, nobody knows.
-    let moved = "attribute vec3 aPosition, aNormal;\nuniform mat4 uM;\nuniform vec3 uLightLocation;\nvarying float lit;\nvoid main() {\n  vec3 n = normalize((uM * vec4(aPosition + aNormal, 1.0)).xyz - (uM * vec4(aPosition, 1.0)).xyz);\n  vec3 l = normalize(uLightLocation - (uM * vec4(aPosition, 1.0)).xyz);\n  lit = max(0.0, dot(n, l));\n  gl_Position = vec4(aPosition, 1.0);\n}\n";
+    let moved = "attribute vec3 aPosition, aNormal;\nuniform mat4 uM;\nuniform vec3 uLightLocation;\nvarying float lit;\nvoid main() {\n  vec3 v = (uM * vec4(aPosition, 1.0)).xyz;\n  vec3 n = normalize((uM * vec4(aPosition + aNormal, 1.0)).xyz - v), l = normalize(uLightLocation - v);\n  lit = max(0.0, dot(n, l));\n  gl_Position = vec4(aPosition, 1.0);\n}\n";
     let found = steps("moved.vert", moved);
     assert!(found.iter().any(|step| step == "8 lambert right"), "{found:?}");
     assert!(found.iter().all(|step| !step.contains("mistake")), "{found:?}");
     // A square within another formula is none of the cosine's own.
-    let smith = "float smith(vec3 normal, vec3 light, float a) {\n  float c = max(dot(normal, light), 0.0);\n  return 2.0 * c / (c + sqrt(a + (1.0 - a) * c * c));\n}\n";
+    let smith = "float smith(vec3 normal, vec3 light, float a) {\n  float c = max(dot(normal, light), 0.0);\n  float square = c * c;\n  return 2.0 * c / (c + sqrt(a + (1.0 - a) * square));\n}\n";
     assert!(steps("smith.glsl", smith).iter().all(|step| !step.contains("mistake")));
     // Of an atmosphere, more of it below is no lost sign.
-    let sky = "uniform float fScale, fInner;\nvarying float fHeight;\nfloat density() {\n  return exp(fScale * (fInner - fHeight));\n}\nvoid main() {\n  gl_FragColor = vec4(density());\n}\n";
+    let sky = "uniform float fDensity;\nvarying float fDepth;\nvoid main() {\n  gl_FragColor = vec4(exp(fDensity * fDepth));\n}\n";
     assert!(steps("sky.fs", sky).iter().all(|step| !step.contains("mistake")));
 }
 
@@ -346,6 +346,8 @@ fn a_steep_ramp_is_no_edge_and_terms_of_other_lights_are_no_measure() {
     };
     let found = steps("lights.fs", &text(&lambert("sunDirection")));
     assert!(found.iter().all(|step| !step.contains("mistake")), "{found:?}");
+    let found = steps("shine.fs", &text("vec3(0.0)"));
+    assert!(found.iter().all(|step| !step.contains("mistake")), "{found:?}");
     // Of one light it does.
     let found = steps("lacks.fs", &text(&(lambert("lightPos - at") + " * fade")));
     assert!(found.iter().any(|step| step.contains("terms mistake specular-not-attenuated")), "{found:?}");
@@ -355,12 +357,12 @@ fn a_steep_ramp_is_no_edge_and_terms_of_other_lights_are_no_measure() {
 fn what_has_no_value_is_not_guarded_by_a_limit() {
     let text = |power: &str| {
         format!(
-            "varying vec3 normal, toLight, toEye;\nvoid main() {{\n  vec3 n = normalize(normal);\n  vec3 h = normalize(normalize(toLight) + normalize(toEye));\n  gl_FragColor = vec4({power});\n}}\n"
+            "varying vec3 normal, toLight, toEye;\nvoid main() {{\n  vec3 n = normalize(normal);\n  float lit = max(0.0, dot(n, normalize(toLight)));\n  vec3 h = normalize(normalize(toLight) + normalize(toEye));\n  gl_FragColor = vec4(lit, {power}, 0.0, 1.0);\n}}\n"
         )
     };
     let late = steps("late.fs", &text("max(0.0, pow(dot(n, h), 50.0))"));
-    assert_eq!(late, ["5 blinn mistake unguarded"]);
-    assert_eq!(steps("early.fs", &text("pow(max(dot(n, h), 0.0), 50.0)")), ["5 blinn right"]);
+    assert_eq!(late, ["4 lambert right", "6 blinn mistake unguarded"]);
+    assert_eq!(steps("early.fs", &text("pow(max(dot(n, h), 0.0), 50.0)")), ["4 lambert right", "6 blinn right"]);
 }
 
 #[test]

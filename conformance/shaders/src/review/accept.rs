@@ -39,6 +39,11 @@ impl Review<'_> {
             "gamma" => self.is_gamma(id, get("power")),
             "normal-transform" => {
                 let normal = get("normal")?;
+                // A normal that is added to a place gives a place.
+                if template.head.worth == Worth::Mistake && matches!(self.graph.op(normal), Op::Binary(Binary::Add, ..))
+                {
+                    return None;
+                }
                 self.named(normal) == Role::Normal || self.is_decoded(normal) || self.normals.contains(&id)
             }
             "decode-normal" => {

@@ -48,6 +48,8 @@ fn normal_by_part(m: mat4x4f, normal: vec3f) -> vec3f { return mat3x3f(m[0].xyz,
 fn normal_by_part_transposed(m: mat4x4f, normal: vec3f) -> vec3f { return normal * mat3x3f(m[0].xyz, m[1].xyz, m[2].xyz); }
 //@ normal-transform right: the normal as the difference of two places that a matrix moved
 fn normal_by_difference(m: mat4x4f, normal: vec3f, offset: vec3f) -> vec3f { return (m * vec4f(offset + normal, 1.0)).xyz - (m * vec4f(offset, 1.0)).xyz; }
+//@ normal-transform right: the normal's opposite as the difference of two places that a matrix moved
+fn normal_by_difference_turned(m: mat4x4f, normal: vec3f, offset: vec3f) -> vec3f { return (m * vec4f(offset, 1.0)).xyz - (m * vec4f(offset + normal, 1.0)).xyz; }
 //@ normal-transform right: a normal of four components by a matrix
 fn normal_of_four(m: mat4x4f, normal: vec4f) -> vec3f { return (m * normal).xyz; }
 //@ normal-transform mistake normal-with-translation: the normal is multiplied as (n, 1): the matrix's translation is added
