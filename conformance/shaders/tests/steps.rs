@@ -354,6 +354,33 @@ fn a_steep_ramp_is_no_edge_and_terms_of_other_lights_are_no_measure() {
 }
 
 #[test]
+fn a_cone_is_a_cone_and_a_half_vector_no_light() {
+    let head = "varying vec3 normal, toLight, toEye;\nuniform vec3 spotDirection, lightDirection;\nuniform float inner, outer, spotExponent;\n";
+    let text = |body: &str| {
+        format!("{head}void main() {{\n  vec3 l = normalize(toLight), n = normalize(normal);\n  {body}\n}}\n")
+    };
+    let by_branches = "float c = dot(-l, normalize(spotDirection)), cone = 1.0;\n  if (c < outer) cone = 0.0;\n  else if (c < inner) cone = (c - outer) / (inner - outer);\n  gl_FragColor = vec4(cone * max(dot(n, l), 0.0));";
+    let found = steps("cone-by-branches.fs", &text(by_branches));
+    assert_eq!(found, ["8 spot right", "8 spot dialect ramp", "9 lambert right"]);
+    let by_half = "float cone = pow(max(dot(normalize(spotDirection), normalize(l + normalize(toEye))), 0.0), spotExponent);\n  gl_FragColor = vec4(cone * max(dot(n, l), 0.0));";
+    assert_eq!(steps("cone-by-half.fs", &text(by_half)), ["6 spot right", "7 lambert right"]);
+    let toon = "float c = dot(normal, normalize(lightDirection + toEye));\n  gl_FragColor = vec4(c);";
+    assert_eq!(steps("toon.fs", &text(toon)), Vec::<String>::new());
+}
+
+#[test]
+fn a_place_is_no_normal_and_what_makes_a_form_good_is_part_of_it() {
+    let moved = "attribute vec3 position, normal;\nuniform mat4 modelView, projection;\nvarying vec3 n, at;\nvoid main() {\n  n = mat3(modelView) * normal;\n  at = normalize((modelView * vec4(position + normal, 1.0)).xyz);\n  gl_Position = projection * vec4(at, 1.0);\n}\n";
+    assert_eq!(steps("moved.vs", moved), ["5 normal-transform right"]);
+    // k.y · d + k.z · d · d may be read as one coefficient of d: the squared term is not missing.
+    let fade = "varying vec3 normal, at;\nuniform vec3 lightPos, k;\nvoid main() {\n  vec3 l = lightPos - at;\n  float d = length(l);\n  float fade = 1.0;\n  if (d != 0.0) {\n    fade = 1.0 / (k.x + (k.y * d) + (k.z * d * d));\n    fade = clamp(fade, 0.0, 1.0);\n  }\n  gl_FragColor = vec4(fade * max(dot(normalize(normal), normalize(l)), 0.0));\n}\n";
+    assert_eq!(steps("fade.fs", fade), ["8 attenuation right", "11 lambert right"]);
+    // naga's reader of GLSL takes one number for three.
+    let parts = "varying vec3 normal, toLight;\nuniform vec4 q;\nstruct Data { vec3 world; } pos;\nvoid main() {\n  pos.world = q.x;\n  float shade = max(dot(normalize(normal), normalize(toLight)), 0.0);\n  gl_FragColor = vec4(length(pos.world.xyz) * shade);\n}\n";
+    assert_eq!(steps("parts.fs", parts), ["6 lambert right"]);
+}
+
+#[test]
 fn what_has_no_value_is_not_guarded_by_a_limit() {
     let text = |power: &str| {
         format!(
