@@ -145,3 +145,118 @@ fn other_compilers_are_asked_for_the_entry_point_and_its_stage() {
         "{said}"
     );
 }
+
+const BOTH_SIDES: &str = "varying vec3 n;\nuniform vec3 toLight;\nvoid main() {\n  gl_FragColor = vec4(abs(dot(normalize(n), toLight)));\n}\n";
+
+#[test]
+fn what_is_meant_as_it_is_is_accepted_by_its_name_and_told() {
+    let own = folder("check-accepted");
+    let wrong = shader(&own, "wrong.frag", BOTH_SIDES).display().to_string();
+    assert_eq!(check(&[&wrong]).0, 1);
+    let (code, said, _) = check(&[&wrong, "--accept", "incidence-of-both-sides"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("✗ incidence-of-both-sides (accepted)") && !said.contains("wrong\n"), "{said}");
+    // Behind the step, above it, and on top of the file.
+    let comment = "// lightmeter: accept incidence-of-both-sides: leaves are lit from both sides\n";
+    let behind = BOTH_SIDES.replace(")));\n", &format!("))); {comment}"));
+    let above = BOTH_SIDES.replace("  gl_", &format!("  {comment}  gl_"));
+    let top = format!("#version 120\n{comment}{BOTH_SIDES}");
+    for (name, text) in [("behind.frag", behind), ("above.frag", above), ("top.frag", top)] {
+        let (code, said, _) = check(&[&shader(&own, name, &text).display().to_string()]);
+        assert_eq!(code, 0, "{name}: {said}");
+    }
+    // At another line it is for nothing, and is told so.
+    let elsewhere = BOTH_SIDES.replace("void main", &format!("{comment}void main"));
+    let (code, said, _) = check(&[&shader(&own, "elsewhere.frag", &elsewhere).display().to_string()]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("line 3: `incidence-of-both-sides` is accepted, and is no longer found"), "{said}");
+    let right = shader(&own, "right.frag", RIGHT).display().to_string();
+    let (code, said, _) = check(&[&right, "--accept", "incidence-of-both-sides"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("note: `incidence-of-both-sides` is accepted, and no step has it"), "{said}");
+    let (_, json, _) = check(&[&wrong, "--accept", "incidence-of-both-sides", "--format", "json"]);
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    let step = json["shaders"][0]["steps"].as_array().expect("steps").iter().find(|step| step["kind"] == "lambert");
+    assert_eq!(step.expect("the step")["accepted"], true);
+}
+
+#[test]
+fn a_name_that_there_is_not_is_refused_with_the_nearest_and_strict_counts_dialects() {
+    let own = folder("check-names");
+    let right = shader(&own, "right.frag", RIGHT).display().to_string();
+    let (code, _, said) = check(&[&right, "--accept", "incidence-of-both-side"]);
+    assert_eq!(code, 2);
+    assert!(said.contains("did you mean `incidence-of-both-sides`?"), "{said}");
+    let typed = shader(&own, "typed.frag", &format!("// lightmeter: accept incidence-of-both-side\n{RIGHT}"));
+    let (code, said, _) = check(&[&typed.display().to_string()]);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("line 1: no dialect and no mistake is called `incidence-of-both-side`"), "{said}");
+    let half = RIGHT.replace("max(dot(normalize(n), toLight), 0.0)", "dot(normalize(n), toLight) * 0.5 + 0.5");
+    let half = shader(&own, "half.frag", &half).display().to_string();
+    let (code, said, _) = check(&[&half]);
+    assert!(code == 0 && said.contains('~'), "{code} {said}");
+    let (code, said, _) = check(&[&half, "--strict"]);
+    assert!(code == 1 && said.contains("in a dialect, which --strict counts"), "{code} {said}");
+    let name = said.split_once("~ ").and_then(|(_, rest)| rest.split_whitespace().next()).expect("a name").to_owned();
+    assert_eq!(check(&[&half, "--strict", "--accept", &name]).0, 0);
+}
+
+#[test]
+fn a_project_says_its_shaders_and_what_they_are_read_with() {
+    let own = folder("check-project");
+    let lit = RIGHT.replace("max(dot(normalize(n), toLight), 0.0)", "LIT(dot(normalize(n), toLight))");
+    shader(&own, "shaders/a/lit.frag", &format!("#include \"lit.h\"\n{lit}"));
+    shader(&own, "include/lit.h", "#define LIT(x) WHICH(x)\n");
+    shader(&own, "other.frag", RIGHT);
+    let toml = |text: &str| std::fs::write(own.join("lightmeter.toml"), text).expect("the folder can be written to");
+    let run = |given: &[&str]| {
+        let output = command(&["check"]).args(given).current_dir(&own).output().expect("it runs");
+        (code(&output), stdout(&output), stderr(&output))
+    };
+    let text = "[[shader]]\nfiles = [\"shaders/**/*.frag\"]\ninclude = [\"include\"]\ndefine = { WHICH = \"abs\" }\n";
+    toml(text);
+    let (code, said, _) = run(&[]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("✗ incidence-of-both-sides") && !said.contains("other.frag"), "{said}");
+    // A file that is named is read with the same; an option wins.
+    assert_eq!(run(&["shaders/a/lit.frag", "other.frag"]).0, 1);
+    let (code, said, _) = run(&["-D", "WHICH=normal_of"]);
+    assert!(code != 1 && !said.contains("incidence-of-both-sides"), "{code} {said}");
+    toml(&format!("{text}accept = [\"incidence-of-both-sides\"]\n"));
+    assert_eq!(run(&[]).0, 0);
+    for (wrong, told) in [
+        (format!("{text}accept = [\"incidence-of-both-side\"]\n"), "did you mean `incidence-of-both-sides`?"),
+        (text.replace("*.frag", "*.wgsl"), "no file is called so"),
+        (text.replace("include =", "includes ="), "unknown field `includes`"),
+        (text.replace("[\"include\"]", "[\"nowhere\"]"), "there is no such folder"),
+        (text.replace("WHICH =", "\"W H\" ="), "is no macro"),
+    ] {
+        toml(&wrong);
+        let (code, _, said) = run(&[]);
+        assert_eq!(code, 2, "{said}");
+        assert!(said.contains(told), "{said}");
+    }
+    let (code, _, said) = run(&["--no-config"]);
+    assert_eq!(code, 2);
+    assert!(said.contains("no file is named"), "{said}");
+}
+
+#[test]
+fn ci_is_told_the_line_of_what_is_wrong() {
+    let own = folder("check-ci");
+    let wrong = shader(&own, "wrong.frag", BOTH_SIDES).display().to_string();
+    let nowhere = own.join("nowhere.frag").display().to_string();
+    let (code, said, _) = check(&[&wrong, &nowhere, "--format", "github"]);
+    assert_eq!(code, 1, "{said}");
+    assert!(
+        said.contains(&format!("::error file={wrong},line=4,title=lambert%3A incidence-of-both-sides::")),
+        "{said}"
+    );
+    assert!(said.contains(&format!("::error file={nowhere},title=not read::")), "{said}");
+    let (_, said, _) = check(&[&wrong, "--format", "github", "--accept", "incidence-of-both-sides"]);
+    assert!(said.contains("::notice file=") && said.contains("(accepted)") && !said.contains("::error"), "{said}");
+    let (code, said, _) = check(&[&wrong, &nowhere, "--format", "junit"]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("tests=\"2\"") && said.contains("failures=\"1\"") && said.contains("errors=\"1\""), "{said}");
+    assert!(said.contains("line=\"4\"") && said.contains("incidence-of-both-sides: "), "{said}");
+}

@@ -3,7 +3,7 @@
 use crate::against::wrong;
 use crate::text::{is_told_by, one_line, sentence};
 use lightmeter_document::cases;
-use lightmeter_document::report::{Group, Report};
+use lightmeter_document::report::{Group, Report, ShaderReview, StepVerdict};
 
 fn data(text: &str) -> String {
     text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
@@ -75,4 +75,40 @@ pub fn annotations(report: &Report) -> String {
         }
     };
     out + &annotation("notice", "lightmeter", &said)
+}
+
+/// The annotations of shaders: one at the line of each step that is not right, an error where it counts as wrong.
+#[must_use]
+pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool) -> String {
+    let mut out = String::new();
+    for shader in shaders {
+        let at = |kind: &str, line: u32| {
+            let line = if line == 0 { String::new() } else { format!(",line={line}") };
+            format!("{kind} file={}{line}", property(&shader.file))
+        };
+        if let Some(why) = &shader.unread {
+            out += &annotation(&at("error", 0), "not read", why);
+        }
+        for what in &shader.refused {
+            out += &annotation(&at("error", 0), "accept", what);
+        }
+        for step in shader.steps.iter().filter(|step| step.verdict != StepVerdict::Right) {
+            let kind = match step.verdict {
+                _ if step.is_wrong(is_strict) => "error",
+                StepVerdict::Perhaps if !step.accepted => "warning",
+                _ => "notice",
+            };
+            let title = format!("{}: {}", step.kind, step.name);
+            let accepted = if step.accepted { " (accepted)" } else { "" };
+            out += &annotation(
+                &at(kind, step.line),
+                title.trim_end_matches([':', ' ']),
+                &format!("{}{accepted}", step.sentence),
+            );
+        }
+        for note in &shader.notes {
+            out += &annotation(&at("notice", 0), "note", note);
+        }
+    }
+    out
 }

@@ -3,7 +3,7 @@
 use super::Level;
 use super::against::wrong;
 use super::text::{self, Style, is_told_by, sentence};
-use lightmeter_document::report::{Group, Report};
+use lightmeter_document::report::{Group, Report, ShaderReview, StepVerdict};
 use quick_junit::{NonSuccessKind, Report as Document, SerializeError, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
@@ -44,6 +44,42 @@ pub fn to_string(report: &Report) -> Result<String, SerializeError> {
             let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
             status.set_message(what);
             suite.add_test_case(TestCase::new(title, status));
+        }
+        document.add_test_suite(suite);
+    }
+    document.to_string()
+}
+
+/// The document of shaders: a suite for each file, a test for each step.
+///
+/// # Errors
+/// Where it cannot be written as XML.
+pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool) -> Result<String, SerializeError> {
+    let mut document = Document::new("lightmeter");
+    for shader in shaders {
+        let mut suite = TestSuite::new(shader.file.as_str());
+        for what in shader.unread.iter().chain(&shader.refused) {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+            status.set_message(what.as_str());
+            suite.add_test_case(TestCase::new("file", status));
+        }
+        for step in &shader.steps {
+            let mut status = TestCaseStatus::success();
+            if step.is_wrong(is_strict) {
+                status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+                status.set_message(format!("{}: {}", step.name, step.sentence));
+            }
+            let mut case = TestCase::new(format!("{} {}", step.line, step.kind), status);
+            case.set_classname(shader.file.as_str());
+            case.extra.insert("file".into(), shader.file.as_str().into());
+            case.extra.insert("line".into(), step.line.to_string().into());
+            if step.verdict != StepVerdict::Right && !step.is_wrong(is_strict) {
+                case.set_system_out(format!("{}: {}", step.name, step.sentence));
+            }
+            suite.add_test_case(case);
+        }
+        if !shader.notes.is_empty() {
+            suite.set_system_out(shader.notes.join("\n"));
         }
         document.add_test_suite(suite);
     }

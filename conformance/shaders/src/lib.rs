@@ -5,8 +5,11 @@
 //! `unify` compares parts of the graph with `templates` on random inputs: syntax and names do not matter. `review` takes what fits best, finds
 //! what each vector is for by what is done with it, and looks at what multiplies what.
 //!
+//! [`accepted`] marks the steps that a project means as they are.
+//!
 //! Nothing here knows a GPU.
 
+pub mod accepted;
 pub mod graph;
 mod lower;
 mod templates;

@@ -8,6 +8,8 @@ use std::sync::LazyLock;
 
 static REVIEWER: LazyLock<Reviewer> = LazyLock::new(|| Reviewer::new().expect("the forms are read"));
 
+static NAMES: LazyLock<Vec<String>> = LazyLock::new(lightmeter_shaders::accepted::names);
+
 fn file(name: &str, text: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("steps-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for the test");
@@ -27,6 +29,11 @@ fn steps(name: &str, text: &str) -> Vec<String> {
 }
 
 fn steps_of(found: &ShaderReview) -> Vec<String> {
+    // What has a name can be accepted by it.
+    let named = found.steps.iter().filter(|step| step.verdict != StepVerdict::Right && !step.name.is_empty());
+    for step in named {
+        assert!(NAMES.contains(&step.name), "`{}` is not among the names", step.name);
+    }
     let word = |verdict: StepVerdict| match verdict {
         StepVerdict::Right => "right",
         StepVerdict::Dialect => "dialect",

@@ -10,6 +10,7 @@ use lightmeter::arithmetic::profile::PROFILES;
 use lightmeter::document::report::ConfigUse;
 use lightmeter::files::read;
 use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -33,6 +34,47 @@ struct Config {
     growth: Option<f64>,
     expect: Option<PathBuf>,
     require: Option<f64>,
+    /// The shaders that `check` reads.
+    #[serde(default)]
+    shader: Vec<Shaders>,
+}
+
+/// Shaders of a project that are read with the same.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "files, include, define and accept")]
+pub(crate) struct Shaders {
+    /// Files, folders and globs, beside the file.
+    pub(crate) files: Vec<String>,
+    /// Where included files are.
+    #[serde(default)]
+    pub(crate) include: Vec<PathBuf>,
+    /// Macros of the host.
+    #[serde(default)]
+    pub(crate) define: BTreeMap<String, String>,
+    /// Dialects and mistakes that are meant as they are.
+    #[serde(default)]
+    pub(crate) accept: Vec<String>,
+}
+
+/// What a project says of its shaders.
+pub(crate) struct Project {
+    /// The folder of the file, as it is called from here.
+    pub(crate) folder: PathBuf,
+    pub(crate) entries: Vec<Shaders>,
+}
+
+/// The shaders of the project's file; `None` where there is no file, or it is left out.
+///
+/// # Errors
+/// Where it cannot be read.
+pub(crate) fn shaders() -> anyhow::Result<Option<Project>> {
+    if std::env::args_os().take_while(|word| word != "--").any(|word| word == LEFT_OUT) {
+        return Ok(None);
+    }
+    let Some((path, file)) = found() else { return Ok(None) };
+    let entries = parsed(&path, &file)?.shader;
+    let folder = Path::new(&file).parent().unwrap_or(Path::new("")).to_owned();
+    Ok(Some(Project { folder, entries }))
 }
 
 /// A name, or a list of names.

@@ -34,8 +34,20 @@ pub struct ShaderStep {
     pub name: String,
     /// What is to be said of it.
     pub sentence: String,
+    /// Whether somebody accepts it as it is: a comment at its line, or the one who asked.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub accepted: bool,
     /// What the shader computes there.
     pub code: String,
+}
+
+impl ShaderStep {
+    /// Whether it counts as wrong: a mistake that nobody accepts, and a dialect where that is asked for.
+    #[must_use]
+    pub fn is_wrong(&self, is_strict: bool) -> bool {
+        let counts = self.verdict == StepVerdict::Mistake || is_strict && self.verdict == StepVerdict::Dialect;
+        counts && !self.accepted
+    }
 }
 
 /// What an output of a shader is made of.
@@ -69,6 +81,9 @@ pub struct ShaderReview {
     /// What was taken for what is not there, and what was left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// Comments that accept what has no such name, each with its line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refused: Vec<String>,
     /// Its steps, by line.
     pub steps: Vec<ShaderStep>,
     /// What its outputs are made of.
@@ -77,9 +92,9 @@ pub struct ShaderReview {
 }
 
 impl ShaderReview {
-    /// How many of its steps have a verdict.
+    /// How many of its steps have a verdict that nobody accepts.
     #[must_use]
-    pub fn count(&self, verdict: StepVerdict) -> usize {
-        self.steps.iter().filter(|step| step.verdict == verdict).count()
+    pub fn open(&self, verdict: StepVerdict) -> usize {
+        self.steps.iter().filter(|step| step.verdict == verdict && !step.accepted).count()
     }
 }

@@ -116,6 +116,7 @@ impl Review<'_> {
             verdict: claim.verdict,
             name: claim.name,
             sentence: claim.sentence,
+            accepted: false,
             code,
         });
     }
@@ -371,7 +372,16 @@ impl Review<'_> {
                 let line = self.line_of(site.id);
                 let sentence = "fog by gl_FragCoord.z, which is no distance".into();
                 let (kind, name, code) = ("fog-distance".into(), "window-depth".into(), text.clone());
-                self.say(ShaderStep { line, also: vec![], kind, verdict: StepVerdict::Mistake, name, sentence, code });
+                self.say(ShaderStep {
+                    line,
+                    also: vec![],
+                    kind,
+                    verdict: StepVerdict::Mistake,
+                    name,
+                    sentence,
+                    accepted: false,
+                    code,
+                });
                 return;
             }
             _ => return,
@@ -481,7 +491,16 @@ impl Review<'_> {
             let also = self.lines_of(site.id).into_iter().filter(|own| *own != line).collect();
             let is_known = self.steps.iter().any(|own| own.kind == "length" && own.name == id && own.code == code);
             if !is_known {
-                self.say(ShaderStep { line, also, kind: "length".into(), verdict, name: id.into(), sentence, code });
+                self.say(ShaderStep {
+                    line,
+                    also,
+                    kind: "length".into(),
+                    verdict,
+                    name: id.into(),
+                    sentence,
+                    accepted: false,
+                    code,
+                });
             }
         }
     }

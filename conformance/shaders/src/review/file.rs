@@ -42,6 +42,7 @@ impl Reviewer {
             language: readings.first().map(|own| own.language.clone()).unwrap_or_default(),
             reader: readings.first().map(|own| own.reader.clone()).unwrap_or_default(),
             notes: vec![],
+            refused: vec![],
             steps: vec![],
             sums: vec![],
         };

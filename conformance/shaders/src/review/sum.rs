@@ -181,7 +181,7 @@ impl Review<'_> {
         for (verdict, name, sentence) in said {
             let code = terms.join(" + ");
             let (kind, name, sentence) = ("terms".into(), name.into(), sentence.into());
-            self.say(ShaderStep { line, also: vec![], kind, verdict, name, sentence, code });
+            self.say(ShaderStep { line, also: vec![], kind, verdict, name, sentence, accepted: false, code });
         }
         let then = through.iter().rev().map(|own| self.sites[own].kind.clone()).collect();
         self.sums.push(ShaderSum { line, output: crate::read::shown(output), terms, then });
@@ -338,7 +338,16 @@ impl Review<'_> {
                 };
                 let sentence = format!("`{name}` has no value before it is used");
                 let (kind, id) = ("value".into(), "not-initialised".into());
-                self.say(ShaderStep { line, also: vec![], kind, verdict, name: id, sentence, code: name });
+                self.say(ShaderStep {
+                    line,
+                    also: vec![],
+                    kind,
+                    verdict,
+                    name: id,
+                    sentence,
+                    accepted: false,
+                    code: name,
+                });
             }
         }
     }

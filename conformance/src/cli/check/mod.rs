@@ -1,19 +1,22 @@
 //! `lightmeter check`.
 
 mod files;
+mod project;
 mod told;
 mod worker;
 
 pub(crate) use worker::Worker;
 
 use super::clock::now;
-use super::options::Format;
 use super::progress::Bar;
-use super::{Status, command, writable};
+use super::{Status, command, emit, show, writable};
 use clap::Args;
 use lightmeter::document::Document as _;
-use lightmeter::document::report::{Report, ShaderReview, StepVerdict};
+use lightmeter::document::report::{Report, Sentence, ShaderReview};
 use lightmeter::files::lines;
+use lightmeter::nearest::did_you_mean;
+use lightmeter::report::{github, junit};
+use lightmeter_shaders::accepted;
 use std::path::PathBuf;
 
 /// Find the steps of shaders, and what is wrong with them
@@ -21,19 +24,36 @@ use std::path::PathBuf;
 /// A shader is a sum of steps: a Lambert factor, a highlight, an attenuation, fog, a gamma curve. They are found by what they compute, whatever
 /// they are called. Each is right (✓), a dialect that has a name (~), a mistake (✗), or perhaps a mistake (?), where names alone say what a
 /// vector is. The exit code is 1 where a step is wrong, else 2 where a file cannot be read, and 3 where no step is found.
+///
+/// What is meant as it is, `// lightmeter: accept NAME` says behind a step, above it, or on top of a file, and `--accept NAME`. A
+/// `lightmeter.toml` has in `[[shader]]` the files that are checked where none is named, and what they are read with.
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// Shaders in GLSL, WGSL, SPIR-V or HLSL, folders of them, and globs
-    #[arg(required = true, value_name = "FILE")]
+    /// Shaders in GLSL, WGSL, SPIR-V or HLSL, folders of them, and globs; without one those of lightmeter.toml
+    #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
     read: Read,
+    /// Count a dialect as wrong, unless it is accepted
+    #[arg(long)]
+    strict: bool,
     /// How the result is written
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    format: CheckFormat,
     /// Write the result to a file
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// How the steps of shaders are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum CheckFormat {
+    Text,
+    Json,
+    /// A suite for each file, a test for each step
+    Junit,
+    /// Lines that GitHub Actions shows as annotations
+    Github,
 }
 
 /// What shaders are read with.
@@ -45,6 +65,18 @@ struct Read {
     /// A macro that the host defines; again for several
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
+    /// A dialect or a mistake, by its name, that is meant as it is; again for several
+    #[arg(long, value_name = "NAME", value_parser = accepted_name)]
+    accept: Vec<String>,
+}
+
+/// A name that a step may have.
+fn accepted_name(text: &str) -> Result<String, String> {
+    let known = accepted::names();
+    if known.iter().any(|own| own == text) {
+        return Ok(text.to_owned());
+    }
+    Err(format!("no dialect and no mistake is called `{text}`{}", did_you_mean(text, known.iter().map(String::as_str))))
 }
 
 /// A macro's name and what it stands for: 1 where nothing is said.
@@ -65,28 +97,48 @@ impl Check {
             anyhow::bail!("`-I {}`: there is no such folder", folder.display());
         }
         let start = std::time::Instant::now();
-        let files = files::all(&self.files)?;
-        let mut bar = Bar::new(Some(files.len() as u64), "files");
-        let shaders = worker::reviews(&files, &self.read, &mut bar)?;
+        let sets = project::sets(&self.files, &self.read)?;
+        let number: usize = sets.iter().map(|set| set.files.len()).sum();
+        let mut bar = Bar::new(Some(number as u64), "files");
+        let (mut shaders, mut notes) = (vec![], vec![]);
+        for set in &sets {
+            let found = worker::reviews(&set.files, &set.read, &mut bar)?;
+            notes.extend(set.read.accept.iter().filter_map(|name| unneeded(name, &found)));
+            shaders.extend(found);
+        }
         bar.bar.finish_and_clear();
-        let status = status(&shaders);
+        notes.dedup();
+        let status = status(&shaders, self.strict);
         let text = match self.format {
-            Format::Text => lines(&told::told(&shaders)).into_owned(),
-            Format::Json => {
+            CheckFormat::Text => lines(&told::told(&shaders, self.strict, &notes)).into_owned(),
+            CheckFormat::Json => {
                 let empty = Report::empty(0, "wgsl".into(), vec![], vec![]);
                 let seconds = start.elapsed().as_secs_f64();
-                Report { command: Some(command()), made_at: now(), seconds, shaders, ..empty }.to_json()?
+                let notes = notes.into_iter().map(Sentence::from).collect();
+                Report { command: Some(command()), made_at: now(), seconds, shaders, notes, ..empty }.to_json()?
             }
+            CheckFormat::Junit => junit::of_shaders(&shaders, self.strict)?,
+            CheckFormat::Github => github::of_shaders(&shaders, self.strict),
         };
-        self.format.emit(&text, self.out.as_deref())?;
+        match self.format {
+            CheckFormat::Text => show(&text, self.out.as_deref())?,
+            _ => emit(&text, self.out.as_deref())?,
+        }
         Ok(status)
     }
 }
 
-fn status(shaders: &[ShaderReview]) -> Status {
-    if shaders.iter().any(|own| own.count(StepVerdict::Mistake) > 0) {
+/// What is told of a name that is accepted and that no step has. Of a file that is not read nobody knows.
+fn unneeded(name: &str, found: &[ShaderReview]) -> Option<String> {
+    let is_open = found.iter().any(|own| own.unread.is_some());
+    let is_found = found.iter().flat_map(|own| &own.steps).any(|step| step.accepted && step.name == name);
+    (!is_open && !is_found).then(|| format!("`{name}` is accepted, and no step has it: take it out"))
+}
+
+fn status(shaders: &[ShaderReview], is_strict: bool) -> Status {
+    if shaders.iter().flat_map(|own| &own.steps).any(|step| step.is_wrong(is_strict)) {
         Status::Failed
-    } else if shaders.iter().any(|own| own.unread.is_some()) {
+    } else if shaders.iter().any(|own| own.unread.is_some() || !own.refused.is_empty()) {
         Status::BadInput
     } else if shaders.iter().all(|own| own.steps.is_empty()) {
         Status::Nothing

@@ -32,13 +32,14 @@ fn cut(text: &str, most: usize) -> String {
     }
 }
 
-pub(super) fn told(shaders: &[ShaderReview]) -> String {
+pub(super) fn told(shaders: &[ShaderReview], is_strict: bool, notes: &[String]) -> String {
     let mut text = String::new();
     for shader in shaders {
-        let _ = tell(shader, &mut text);
+        let _ = tell(shader, is_strict, &mut text);
     }
     if shaders.len() > 1 {
-        let all = |verdict: StepVerdict| shaders.iter().map(|own| own.count(verdict)).sum::<usize>();
+        let all = |verdict: StepVerdict| shaders.iter().map(|own| own.open(verdict)).sum::<usize>();
+        let accepted = shaders.iter().flat_map(|own| &own.steps).filter(|step| step.accepted).count();
         let steps: usize = shaders.iter().map(|own| own.steps.len()).sum();
         let unread = shaders.iter().filter(|own| own.unread.is_some()).count();
         let mut parts = vec![number(shaders.len(), "file"), number(steps, "step")];
@@ -49,13 +50,17 @@ pub(super) fn told(shaders: &[ShaderReview]) -> String {
         ] {
             parts.extend((all(verdict) > 0).then(|| format!("{} {word}", all(verdict))));
         }
+        parts.extend((accepted > 0).then(|| format!("{accepted} accepted")));
         parts.extend((unread > 0).then(|| format!("{unread} not read")));
         let _ = writeln!(text, "{}", parts.join(", "));
+    }
+    for note in notes {
+        let _ = writeln!(text, "note: {note}");
     }
     text
 }
 
-fn tell(shader: &ShaderReview, text: &mut String) -> std::fmt::Result {
+fn tell(shader: &ShaderReview, is_strict: bool, text: &mut String) -> std::fmt::Result {
     if let Some(why) = &shader.unread {
         // `12: what is wrong` is of a line.
         let colon = if why.starts_with(|c: char| c.is_ascii_digit()) { ":" } else { ": " };
@@ -67,6 +72,9 @@ fn tell(shader: &ShaderReview, text: &mut String) -> std::fmt::Result {
     writeln!(text, "{}: {}{by}, {steps}", shader.file, shader.language)?;
     for note in &shader.notes {
         writeln!(text, "  note: {note}")?;
+    }
+    for what in &shader.refused {
+        writeln!(text, "  ✗ {what}")?;
     }
     if shader.steps.is_empty() {
         return writeln!(text);
@@ -82,10 +90,15 @@ fn tell(shader: &ShaderReview, text: &mut String) -> std::fmt::Result {
     for sum in &shader.sums {
         tell_sum(sum, text)?;
     }
-    let wrong = shader.count(StepVerdict::Mistake);
+    let of = number(shader.steps.len(), "step");
+    let are = |n: usize| if n == 1 { "is" } else { "are" };
+    let wrong = shader.open(StepVerdict::Mistake);
     if wrong > 0 {
-        let are = if wrong == 1 { "is" } else { "are" };
-        writeln!(text, "✗ {wrong} of {} {are} wrong", number(shader.steps.len(), "step"))?;
+        writeln!(text, "✗ {wrong} of {of} {} wrong", are(wrong))?;
+    }
+    let dialects = shader.open(StepVerdict::Dialect);
+    if is_strict && dialects > 0 {
+        writeln!(text, "✗ {dialects} of {of} {} in a dialect, which --strict counts", are(dialects))?;
     }
     writeln!(text)
 }
@@ -99,8 +112,9 @@ fn tell_step(step: &ShaderStep, source: &str, width: usize, text: &mut String) -
     } else {
         format!(" {}", step.name)
     };
+    let accepted = if step.accepted { " (accepted)" } else { "" };
     let shown = cut(shown, MOST_SOURCE);
-    writeln!(text, "{place:>5}  {:<width$}  {shown:<MOST_SOURCE$}  {}{name}", step.kind, mark(step.verdict))?;
+    writeln!(text, "{place:>5}  {:<width$}  {shown:<MOST_SOURCE$}  {}{name}{accepted}", step.kind, mark(step.verdict))?;
     if step.verdict != StepVerdict::Right {
         let indent = " ".repeat(9 + width);
         let options = textwrap::Options::new(WIDTH).initial_indent(&indent).subsequent_indent(&indent);

@@ -10,8 +10,9 @@ use super::Read;
 use anyhow::Context as _;
 use clap::Args;
 use lightmeter::document::report::ShaderReview;
-use lightmeter_shaders::Reviewer;
-use lightmeter_shaders::read::ReadOptions;
+use lightmeter::nearest::did_you_mean;
+use lightmeter_shaders::read::{ReadOptions, ShaderError};
+use lightmeter_shaders::{Reviewer, accepted};
 #[cfg(unix)]
 use rustix::process::{Resource, Rlimit, setrlimit};
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -42,11 +43,12 @@ impl Worker {
         // What a panic says is no part of the answer.
         std::panic::set_hook(Box::new(|_| {}));
         let options = ReadOptions { include: self.read.include, defines: self.read.define };
+        let accept = self.read.accept;
         let answer = move || -> anyhow::Result<()> {
             let reviewer = Reviewer::new().map_err(anyhow::Error::msg)?;
             for line in std::io::stdin().lock().lines() {
                 let file: PathBuf = serde_json::from_str(&line?)?;
-                let review = reviewed(&reviewer, &file, &options);
+                let review = reviewed(&reviewer, &file, &options, &accept);
                 writeln!(std::io::stdout(), "{}", serde_json::to_string(&review)?)?;
             }
             Ok(())
@@ -57,8 +59,15 @@ impl Worker {
     }
 }
 
-fn reviewed(reviewer: &Reviewer, file: &Path, options: &ReadOptions) -> ShaderReview {
-    let review = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| reviewer.review(file, options)));
+fn reviewed(reviewer: &Reviewer, file: &Path, options: &ReadOptions, accept: &[String]) -> ShaderReview {
+    let known = accepted::names();
+    let near = |name: &str| did_you_mean(name, known.iter().map(String::as_str));
+    let review = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        let mut review = reviewer.review(file, options)?;
+        let text = std::fs::read(file).unwrap_or_default();
+        accepted::accept(&mut review, &String::from_utf8_lossy(&text), accept, &near);
+        Ok::<_, ShaderError>(review)
+    }));
     match review {
         Ok(Ok(review)) => review,
         Ok(Err(error)) => unread(file, &error.to_string()),
@@ -90,6 +99,9 @@ impl Process {
         });
         read.define.iter().for_each(|(name, value)| {
             command.arg("-D").arg(format!("{name}={value}"));
+        });
+        read.accept.iter().for_each(|name| {
+            command.arg("--accept").arg(name);
         });
         let mut child = command
             .stdin(Stdio::piped())
@@ -132,7 +144,7 @@ impl Process {
     }
 }
 
-/// The reviews of files, in their order.
+/// The reviews of files that are read with the same, in their order.
 pub(super) fn reviews(files: &[PathBuf], read: &Read, bar: &mut Bar) -> anyhow::Result<Vec<ShaderReview>> {
     let mut process = Process::start(read)?;
     let mut found = vec![];
