@@ -223,6 +223,9 @@ fn a_project_says_its_shaders_and_what_they_are_read_with() {
     assert!(code == 1 && said.contains("✗ incidence-of-both-sides"), "{code} {said}");
     let (code, said, _) = run(&["-D", "WHICH=normal_of"]);
     assert!(code != 1 && !said.contains("incidence-of-both-sides"), "{code} {said}");
+    // What is accepted for all files is needed where one has it.
+    let (code, said, _) = run(&["shaders/a/lit.frag", "other.frag", "--accept", "incidence-of-both-sides"]);
+    assert!(code == 0 && !said.contains("take it out"), "{code} {said}");
     toml(&format!("{text}accept = [\"incidence-of-both-sides\"]\n"));
     assert_eq!(run(&[]).0, 0);
     for (wrong, told) in [

@@ -103,11 +103,13 @@ impl Check {
         let (mut shaders, mut notes) = (vec![], vec![]);
         for set in &sets {
             let found = worker::reviews(&set.files, &set.read, &mut bar)?;
-            notes.extend(set.read.accept.iter().filter_map(|name| unneeded(name, &found)));
+            // What is given is for all files.
+            let of_set = set.read.accept.iter().filter(|name| !self.read.accept.contains(name));
+            notes.extend(of_set.filter_map(|name| unneeded(name, &found)));
             shaders.extend(found);
         }
+        notes.extend(self.read.accept.iter().filter_map(|name| unneeded(name, &shaders)));
         bar.bar.finish_and_clear();
-        notes.dedup();
         let status = status(&shaders, self.strict);
         let text = match self.format {
             CheckFormat::Text => lines(&told::told(&shaders, self.strict, &notes)).into_owned(),
