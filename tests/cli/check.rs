@@ -264,3 +264,16 @@ fn ci_is_told_the_line_of_what_is_wrong() {
     assert!(said.contains("tests=\"2\"") && said.contains("failures=\"1\"") && said.contains("errors=\"1\""), "{said}");
     assert!(said.contains("line=\"4\"") && said.contains("incidence-of-both-sides: "), "{said}");
 }
+
+#[test]
+fn effects_of_hlsl_are_read_without_annotations_and_macros_that_are_elsewhere() {
+    let is_there = Command::new("glslangValidator").arg("--version").output().is_ok();
+    if lacks(!is_there, ("glslang", "needs glslangValidator (Debian: apt-get install glslang-tools)")) {
+        return;
+    }
+    let text = "#include \"host.fxh\"\nuniform float Power <\n  ui_type = \"slider > a\"; ui_max = 8.0;\n> = 2.0;\nDECLARE_SHADOW(\"SpotLight\", Lamp)\nLOCAL_SAMPLER(map, 0);\nTexture2D<float4> Map : register(SLOT_MAP);\nSamplerState Linear : register(s0);\nfloat3 ToLight < string UIName = \"light\"; >;\nbool less(float a, float b) { return a < b; }\nfloat4 main(float3 n : NORMAL, float2 at : TEXCOORD0) : SV_Target {\n  float lit = max(dot(normalize(n), normalize(ToLight)), 0.0);\n  return Map.Sample(Linear, at) * lit * (less(lit, Power) ? 1.0 : 0.5);\n}\n";
+    let path = shader(&folder("check-effect"), "annotated.hlsl", text).display().to_string();
+    let (code, said, _) = check(&[&path]);
+    assert!(code == 0 && said.contains("   12  lambert") && said.contains("1 step"), "{said}");
+    assert!(said.contains("line 5: the macro `DECLARE_SHADOW` is not there"), "{said}");
+}

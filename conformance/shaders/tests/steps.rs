@@ -361,6 +361,17 @@ fn a_steep_ramp_is_no_edge_and_terms_of_other_lights_are_no_measure() {
 }
 
 #[test]
+fn a_vector_of_which_a_part_is_set_has_perhaps_no_value() {
+    let text = |set: &str| {
+        format!(
+            "varying vec2 at;\nuniform vec4 tint;\nvoid main() {{\n  vec4 r;\n  {set}\n  vec4 s = r * tint;\n  gl_FragColor = vec4(s.xy + s.zw, 0.0, 1.0);\n}}\n"
+        )
+    };
+    assert_eq!(steps("unset.fs", &text("")), ["6 value mistake not-initialised"]);
+    assert_eq!(steps("set.fs", &text("r.xy = at;")), ["6 value perhaps not-initialised"]);
+}
+
+#[test]
 fn a_cone_is_a_cone_and_a_half_vector_no_light() {
     let head = "varying vec3 normal, toLight, toEye;\nuniform vec3 spotDirection, lightDirection;\nuniform float inner, outer, spotExponent;\n";
     let text = |body: &str| {

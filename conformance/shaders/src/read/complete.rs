@@ -471,9 +471,9 @@ fn of_hlsl(path: &Path, own: &Lines, options: &ReadOptions) -> Result<Vec<Shader
         return Err(ShaderError::Language { path: path.into(), message });
     }
     let mut notes = vec![];
-    let included = hlsl::of_direct3d_9(&mended(&macros::included(own, options, &mut notes), &mut notes));
+    let included = mended(&macros::included(own, options, &mut notes), &mut notes);
+    let included = hlsl::plain(&included, &mut notes);
     let mut text = Lines::default();
-    let included = hlsl::without_states(&included);
     if words(&included.text).any(|word| word == "UnityCG" || word.starts_with("UNITY_") || word.starts_with("fixed")) {
         text.push_all(hosts::OF_UNITY);
     }

@@ -3,6 +3,9 @@
 use super::lines::Lines;
 use super::macros::words;
 
+/// Characters of an annotation.
+const MOST_ANNOTATION: usize = 8192;
+
 /// Entry points of HLSL: their names, and whether each is a vertex shader's.
 pub(super) fn entries(text: &str) -> Vec<(String, bool)> {
     let mut found: Vec<(String, bool)> = vec![];
@@ -52,8 +55,14 @@ pub(super) fn entries(text: &str) -> Vec<(String, bool)> {
     found
 }
 
+/// A text without what effects and hosts add to HLSL, so that a compiler reads it.
+pub(super) fn plain(own: &Lines, notes: &mut Vec<String>) -> Lines {
+    let shaders = without_states(&of_direct3d_9(&without_annotations(own)));
+    without_macros_of_hosts(&shaders, notes)
+}
+
 /// Textures and samplers of Direct3D 9 as those of 10.
-pub(super) fn of_direct3d_9(own: &Lines) -> Lines {
+fn of_direct3d_9(own: &Lines) -> Lines {
     const SAMPLERS: [&str; 6] = ["sampler", "sampler2D", "samplerCUBE", "sampler3D", "sampler1D", "Sampler2D"];
     let mut found = Lines::default();
     let is_old =
@@ -93,7 +102,7 @@ pub(super) fn of_direct3d_9(own: &Lines) -> Lines {
 }
 
 /// States of Direct3D 10's effects, in braces after a name, are taken off.
-pub(super) fn without_states(own: &Lines) -> Lines {
+fn without_states(own: &Lines) -> Lines {
     const STATES: [&str; 5] =
         ["SamplerState", "SamplerComparisonState", "BlendState", "RasterizerState", "DepthStencilState"];
     let mut found = Lines::default();
@@ -115,6 +124,88 @@ pub(super) fn without_states(own: &Lines) -> Lines {
     found
 }
 
+/// Annotations of effects are taken off: `float x < string UIName = "x"; > = 1.0;`.
+fn without_annotations(own: &Lines) -> Lines {
+    let mut text = String::new();
+    // What was read of the statement.
+    let mut statement = String::new();
+    let mut rest = own.text.as_str();
+    while let Some(c) = rest.chars().next() {
+        let is_skipped = c == '#' || rest.starts_with("//");
+        let skipped = if is_skipped { rest.find('\n').unwrap_or(rest.len()) } else { 0 };
+        let annotation = if c == '<' && is_declaration(&statement) { annotation(rest) } else { None };
+        let taken = annotation.unwrap_or(if skipped > 0 { skipped } else { c.len_utf8() });
+        let (now, after) = rest.split_at(taken);
+        if annotation.is_some() {
+            text.extend(now.chars().filter(|c| *c == '\n'));
+        } else {
+            text += now;
+        }
+        match c {
+            ';' | '{' | '}' => statement.clear(),
+            _ if taken == c.len_utf8() => statement.push(c),
+            _ => {}
+        }
+        rest = after;
+    }
+    own.with_text(&text)
+}
+
+/// Whether a statement so far is a type and a name.
+fn is_declaration(statement: &str) -> bool {
+    let all: Vec<&str> = words(statement).collect();
+    all.len() >= 2 && !statement.contains(['(', '=', '<']) && !matches!(all[0], "return" | "else" | "case")
+}
+
+/// The length of an annotation that a text begins with: assignments, each with a semicolon, between `<` and `>`.
+fn annotation(text: &str) -> Option<usize> {
+    let (mut in_quotes, mut has_value) = (false, false);
+    for (k, c) in text.char_indices().skip(1).take(MOST_ANNOTATION) {
+        match c {
+            '"' => in_quotes = !in_quotes,
+            _ if in_quotes => {}
+            '>' => return has_value.then_some(k + 1),
+            '=' => has_value = true,
+            '{' | '}' => return None,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Registers whose numbers are macros that are not there are taken off, and lines that are nothing but a macro that is not there.
+fn without_macros_of_hosts(own: &Lines, notes: &mut Vec<String>) -> Lines {
+    let is_defined = |name: &str| {
+        own.text.lines().any(|line| line.trim_start().starts_with("#define") && words(line).nth(1) == Some(name))
+    };
+    let mut found = Lines::default();
+    let mut depth = 0_i32;
+    for (line, number) in own.iter() {
+        let code = line.split("//").next().unwrap_or_default().trim();
+        let name = words(code).next().unwrap_or_default();
+        let is_macro = name.len() > 3 && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
+        let after = code.strip_prefix(name).unwrap_or_default().trim_end_matches(';').trim();
+        let inside = after.strip_suffix(')');
+        let is_whole = after.is_empty() || inside.is_some_and(|inside| opening(inside) == Some(0));
+        let is_lone = depth == 0 && is_macro && code.starts_with(name) && is_whole;
+        depth += code.chars().map(|c| i32::from(c == '{') - i32::from(c == '}')).sum::<i32>();
+        if is_lone && !is_defined(name) {
+            notes.push(format!("line {number}: the macro `{name}` is not there: the line is left out"));
+            found.push("", number);
+            continue;
+        }
+        let register = line.split_once("register").and_then(|(before, rest)| {
+            let before = before.trim_end().strip_suffix(':')?;
+            let (number, after) = rest.trim_start().strip_prefix('(')?.split_once(')')?;
+            let name = number.split(',').next().unwrap_or_default().trim();
+            let is_number = name.chars().skip(1).all(|c| c.is_ascii_digit());
+            (!is_number && !is_defined(name)).then(|| format!("{before}{after}"))
+        });
+        found.push(register.as_deref().unwrap_or(line), number);
+    }
+    found
+}
+
 /// The place of the bracket that a text's last closes.
 fn opening(text: &str) -> Option<usize> {
     let mut depth = 1;
@@ -129,4 +220,30 @@ fn opening(text: &str) -> Option<usize> {
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Lines {
+        Lines::of_file(text)
+    }
+
+    #[test]
+    fn annotations_are_taken_off_and_comparisons_and_types_are_not() {
+        let taken = without_annotations(&of("uniform float a <\n  ui = \"> b\"; most = 8.0;\n> = 2.0;\nfloat b;\n"));
+        assert_eq!(taken.text, "uniform float a \n\n = 2.0;\nfloat b;\n");
+        let kept = "uniform Texture2D<float4> map;\nbool less(float a, float b) { return a < b; }\nfor (int k = 0; k < 4; k++) x = a > b;\n// a b < c = 1; >\n";
+        assert_eq!(without_annotations(&of(kept)).text, kept);
+    }
+
+    #[test]
+    fn macros_that_are_elsewhere_are_left_out_where_they_stand_alone() {
+        let mut notes = vec![];
+        let text = "#define OWN(x) x;\nOWN(float a)\nHOSTS(\"a\", b)\nHOSTS_TOO\nfloat4 MAIN() {\nCALL(a);\n}\nTexture2D m : register(SLOT, space0); SamplerState s : register(s0);\n";
+        let taken = without_macros_of_hosts(&of(text), &mut notes);
+        let wanted = "#define OWN(x) x;\nOWN(float a)\n\n\nfloat4 MAIN() {\nCALL(a);\n}\nTexture2D m ; SamplerState s : register(s0);\n";
+        assert_eq!((taken.text.as_str(), notes.len()), (wanted, 2));
+    }
 }

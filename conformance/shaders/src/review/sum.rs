@@ -330,8 +330,8 @@ impl Review<'_> {
                 let name = crate::read::shown(&leaf.name);
                 // What is only handed on may be set wherever it matters.
                 let (verdict, line) = match self.first_use(own) {
-                    // Parts of a structure may be set wherever they matter.
-                    Some(line) if name.contains(['.', '[']) => (StepVerdict::Perhaps, line),
+                    // Parts of a structure or a vector may be set wherever they matter.
+                    Some(line) if name.contains(['.', '[']) || self.is_set_in_part(own) => (StepVerdict::Perhaps, line),
                     Some(line) => (StepVerdict::Mistake, line),
                     None if name.split('.').next() == output.name.split('.').next() => continue,
                     None => (StepVerdict::Perhaps, self.graph.line(output.value)),
@@ -350,6 +350,16 @@ impl Review<'_> {
                 });
             }
         }
+    }
+
+    /// Whether some components of a vector are set, and others are not.
+    fn is_set_in_part(&self, id: NodeId) -> bool {
+        let is_of = |own: NodeId| own == id || matches!(self.graph.op(own), Op::Swizzle(of, _) if *of == id);
+        let parts = self.users(id).iter().filter(|own| is_of(**own));
+        parts.flat_map(|own| self.users(*own)).any(|whole| match self.graph.op(*whole) {
+            Op::Vector(all) => !all.iter().all(|own| is_of(*own)),
+            _ => false,
+        })
     }
 
     /// The line that first computes with a value, and does not hand it on alone.
