@@ -361,14 +361,17 @@ fn a_steep_ramp_is_no_edge_and_terms_of_other_lights_are_no_measure() {
 }
 
 #[test]
-fn a_vector_of_which_a_part_is_set_has_perhaps_no_value() {
-    let text = |set: &str| {
+fn a_component_has_to_have_a_value_only_where_it_is_used() {
+    let text = |set: &str, used: &str| {
         format!(
-            "varying vec2 at;\nuniform vec4 tint;\nvoid main() {{\n  vec4 r;\n  {set}\n  vec4 s = r * tint;\n  gl_FragColor = vec4(s.xy + s.zw, 0.0, 1.0);\n}}\n"
+            "varying vec2 at;\nuniform vec4 tint;\nvoid main() {{\n  vec4 r;\n  {set}\n  vec4 s = r * tint;\n  gl_FragColor = vec4({used}, 0.0, 1.0);\n}}\n"
         )
     };
-    assert_eq!(steps("unset.fs", &text("")), ["6 value mistake not-initialised"]);
-    assert_eq!(steps("set.fs", &text("r.xy = at;")), ["6 value perhaps not-initialised"]);
+    assert_eq!(steps("unset.fs", &text("", "s.xy + s.zw")), ["6 value mistake not-initialised"]);
+    assert_eq!(steps("in-part.fs", &text("r.xy = at;", "s.xy + s.zw")), ["6 value mistake not-initialised"]);
+    assert_eq!(steps("set.fs", &text("r.xy = at;", "s.xy")), Vec::<String>::new());
+    assert_eq!(steps("one.fs", &text("r.xy = at;", "at * s.x")), Vec::<String>::new());
+    assert_eq!(steps("whole.fs", &text("r.xy = at;", "s.xy * length(s)")), ["6 value mistake not-initialised"]);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! computed, and under which conditions, stands beside its node (`Occurrence`), since two branches may compute the same.
 
 mod build;
+mod demand;
 mod evaluate;
 #[cfg(test)]
 mod tests;

@@ -320,7 +320,9 @@ impl Review<'_> {
     pub(super) fn values_without(&mut self, roots: &[Root]) {
         let mut seen = HashSet::new();
         for output in roots.iter().flat_map(|root| &root.outputs) {
-            for own in self.graph.leaves_of(output.value) {
+            let demanded = self.graph.demanded(output.value);
+            let is_demanded = |own: NodeId| demanded.get(&own).is_some_and(|components| *components > 0);
+            for own in self.graph.leaves_of(output.value).into_iter().filter(|own| is_demanded(*own)) {
                 let Some(leaf) = self.graph.leaf_of(own).filter(|leaf| leaf.origin == Origin::NoValue) else {
                     continue;
                 };
@@ -330,8 +332,8 @@ impl Review<'_> {
                 let name = crate::read::shown(&leaf.name);
                 // What is only handed on may be set wherever it matters.
                 let (verdict, line) = match self.first_use(own) {
-                    // Parts of a structure or a vector may be set wherever they matter.
-                    Some(line) if name.contains(['.', '[']) || self.is_set_in_part(own) => (StepVerdict::Perhaps, line),
+                    // Parts of a structure may be set wherever they matter.
+                    Some(line) if name.contains(['.', '[']) => (StepVerdict::Perhaps, line),
                     Some(line) => (StepVerdict::Mistake, line),
                     None if name.split('.').next() == output.name.split('.').next() => continue,
                     None => (StepVerdict::Perhaps, self.graph.line(output.value)),
@@ -350,16 +352,6 @@ impl Review<'_> {
                 });
             }
         }
-    }
-
-    /// Whether some components of a vector are set, and others are not.
-    fn is_set_in_part(&self, id: NodeId) -> bool {
-        let is_of = |own: NodeId| own == id || matches!(self.graph.op(own), Op::Swizzle(of, _) if *of == id);
-        let parts = self.users(id).iter().filter(|own| is_of(**own));
-        parts.flat_map(|own| self.users(*own)).any(|whole| match self.graph.op(*whole) {
-            Op::Vector(all) => !all.iter().all(|own| is_of(*own)),
-            _ => false,
-        })
     }
 
     /// The line that first computes with a value, and does not hand it on alone.
