@@ -165,11 +165,11 @@ fn what_is_meant_as_it_is_is_accepted_by_its_name_and_told() {
         let (code, said, _) = check(&[&shader(&own, name, &text).display().to_string()]);
         assert_eq!(code, 0, "{name}: {said}");
     }
-    // At another line it is for nothing, and is told so.
+    // A comment at another line accepts nothing, and a note says so.
     let elsewhere = BOTH_SIDES.replace("void main", &format!("{comment}void main"));
     let (code, said, _) = check(&[&shader(&own, "elsewhere.frag", &elsewhere).display().to_string()]);
     assert_eq!(code, 1, "{said}");
-    assert!(said.contains("line 3: `incidence-of-both-sides` is accepted, and is no longer found"), "{said}");
+    assert!(said.contains("line 3: this comment accepts `incidence-of-both-sides`, which is not found here"), "{said}");
     let right = shader(&own, "right.frag", RIGHT).display().to_string();
     let (code, said, _) = check(&[&right, "--accept", "incidence-of-both-sides"]);
     assert_eq!(code, 0, "{said}");
@@ -223,7 +223,7 @@ fn a_project_says_its_shaders_and_what_they_are_read_with() {
     assert!(code == 1 && said.contains("✗ incidence-of-both-sides"), "{code} {said}");
     let (code, said, _) = run(&["-D", "WHICH=normal_of"]);
     assert!(code != 1 && !said.contains("incidence-of-both-sides"), "{code} {said}");
-    // What is accepted for all files is needed where one has it.
+    // A name that is accepted for all files is needed if one of them has it.
     let (code, said, _) = run(&["shaders/a/lit.frag", "other.frag", "--accept", "incidence-of-both-sides"]);
     assert!(code == 0 && !said.contains("take it out"), "{code} {said}");
     toml(&format!("{text}accept = [\"incidence-of-both-sides\"]\n"));
@@ -259,6 +259,14 @@ fn ci_is_told_the_line_of_what_is_wrong() {
     assert!(said.contains(&format!("::error file={nowhere},title=not read::")), "{said}");
     let (_, said, _) = check(&[&wrong, "--format", "github", "--accept", "incidence-of-both-sides"]);
     assert!(said.contains("::notice file=") && said.contains("(accepted)") && !said.contains("::error"), "{said}");
+    let typed =
+        shader(&own, "typed.frag", &format!("\n// lightmeter: accept nothing-like-it\n{RIGHT}")).display().to_string();
+    let (code, said, _) = check(&[&typed, "--format", "github", "--accept", "ramp"]);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains(&format!("::error file={typed},line=2,title=accept::")), "{said}");
+    assert!(said.contains("::warning title=note::`ramp` is accepted"), "{said}");
+    let (_, said, _) = check(&[&typed, "--format", "junit", "--accept", "ramp"]);
+    assert!(said.contains("errors=\"1\"") && said.contains("`ramp` is accepted"), "{said}");
     let (code, said, _) = check(&[&wrong, &nowhere, "--format", "junit"]);
     assert_eq!(code, 1, "{said}");
     assert!(said.contains("tests=\"2\"") && said.contains("failures=\"1\"") && said.contains("errors=\"1\""), "{said}");

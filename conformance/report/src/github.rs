@@ -77,9 +77,9 @@ pub fn annotations(report: &Report) -> String {
     out + &annotation("notice", "lightmeter", &said)
 }
 
-/// The annotations of shaders: one at the line of each step that is not right, an error where it counts as wrong.
+/// The annotations of shaders: one at the line of each step that is not right, an error where it counts as wrong; and notes on all of them.
 #[must_use]
-pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool) -> String {
+pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool, notes: &[String]) -> String {
     let mut out = String::new();
     for shader in shaders {
         let at = |kind: &str, line: u32| {
@@ -90,7 +90,7 @@ pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool) -> String {
             out += &annotation(&at("error", 0), "not read", why);
         }
         for what in &shader.refused {
-            out += &annotation(&at("error", 0), "accept", what);
+            out += &annotation(&at("error", what.line), "accept", &what.says);
         }
         for step in shader.steps.iter().filter(|step| step.verdict != StepVerdict::Right) {
             let kind = match step.verdict {
@@ -110,5 +110,5 @@ pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool) -> String {
             out += &annotation(&at("notice", 0), "note", note);
         }
     }
-    out
+    out + &notes.iter().map(|note| annotation("warning", "note", note)).collect::<String>()
 }

@@ -50,17 +50,18 @@ pub fn to_string(report: &Report) -> Result<String, SerializeError> {
     document.to_string()
 }
 
-/// The document of shaders: a suite for each file, a test for each step.
+/// The document of shaders: a suite for each file, a test for each step, and a suite `whole` for notes on all of them.
 ///
 /// # Errors
 /// Where it cannot be written as XML.
-pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool) -> Result<String, SerializeError> {
+pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool, notes: &[String]) -> Result<String, SerializeError> {
     let mut document = Document::new("lightmeter");
     for shader in shaders {
         let mut suite = TestSuite::new(shader.file.as_str());
-        for what in shader.unread.iter().chain(&shader.refused) {
+        let refused = shader.refused.iter().map(|own| format!("line {}: {}", own.line, own.says));
+        for what in shader.unread.iter().cloned().chain(refused) {
             let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-            status.set_message(what.as_str());
+            status.set_message(what);
             suite.add_test_case(TestCase::new("file", status));
         }
         for step in &shader.steps {
@@ -81,6 +82,11 @@ pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool) -> Result<String, S
         if !shader.notes.is_empty() {
             suite.set_system_out(shader.notes.join("\n"));
         }
+        document.add_test_suite(suite);
+    }
+    if !notes.is_empty() {
+        let mut suite = TestSuite::new("whole");
+        suite.set_system_out(notes.join("\n"));
         document.add_test_suite(suite);
     }
     document.to_string()

@@ -1,10 +1,10 @@
-//! What is accepted as it is: by a comment in a shader, or by the one who asks.
+//! Dialects and mistakes that are accepted by name: in a comment of the shader, or by whoever asks for the review.
 //!
-//! `// lightmeter: accept NAME` stands behind a step, or alone on the line above it. Above all code it is for the whole file. Several names have
-//! commas between them; what follows a colon is the reason.
+//! `// lightmeter: accept NAME` stands behind a step, or alone on the line above it; a comment above the first line of code holds for the whole
+//! file. Several names are separated by commas; a reason may follow after a colon.
 
 use crate::templates::{self, Worth};
-use lightmeter_document::report::{ShaderReview, StepVerdict};
+use lightmeter_document::report::{RefusedName, ShaderReview, StepVerdict};
 
 /// What a comment begins with.
 const WORDS: &str = "lightmeter: accept ";
@@ -95,8 +95,8 @@ fn has_code(line: &str, in_comment: &mut bool) -> bool {
     }
 }
 
-/// Marks the steps of a file that are accepted, by its comments or by a name that is given, and notes what a comment accepts and is not found.
-/// Of a name that there is not, `near` says which may be meant.
+/// Marks the steps of a file that its comments or the given names accept, and notes the comments that accept nothing.
+/// For a name that does not exist, `near` says which one may be meant.
 pub fn accept(review: &mut ShaderReview, text: &str, given: &[String], near: &dyn Fn(&str) -> String) {
     let known = names();
     for step in review.steps.iter_mut().filter(|step| step.verdict != StepVerdict::Right) {
@@ -105,7 +105,8 @@ pub fn accept(review: &mut ShaderReview, text: &str, given: &[String], near: &dy
     for comment in comments(text) {
         let Comment { name, line, at } = comment;
         if !known.iter().any(|own| own == name) {
-            review.refused.push(format!("line {line}: no dialect and no mistake is called `{name}`{}", near(name)));
+            let says = format!("no dialect and no mistake is called `{name}`{}", near(name));
+            review.refused.push(RefusedName { line, says });
             continue;
         }
         let is_meant = |own: u32| at.is_none_or(|at| at == own);
@@ -116,9 +117,9 @@ pub fn accept(review: &mut ShaderReview, text: &str, given: &[String], near: &dy
             }
         }
         if !is_found {
-            review
-                .notes
-                .push(format!("line {line}: `{name}` is accepted, and is no longer found: take the comment out"));
+            review.notes.push(format!(
+                "line {line}: this comment accepts `{name}`, which is not found here: take the comment out"
+            ));
         }
     }
 }
@@ -135,6 +136,22 @@ mod tests {
             [("ramp", 4, None), ("not-clamped", 7, Some(9)), ("by-a-branch", 7, Some(9)), ("window-depth", 9, Some(9))];
         assert_eq!(found, wanted);
         assert_eq!(comments("a\rb // lightmeter: accept ramp\rc")[0].at, Some(2));
+    }
+
+    /// A name that the review says and that is not in the list could not be accepted.
+    #[test]
+    fn the_names_of_the_review_are_those_in_its_code() {
+        const CODE: [&str; 2] = [include_str!("review/claim.rs"), include_str!("review/sum.rs")];
+        const KINDS: [&str; 4] = ["decode-normal", "fog-distance", "fog-mix", "normal-transform"];
+        let is_name = |own: &&str| own.contains('-') && own.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+        let said: Vec<&str> = CODE.iter().flat_map(|code| code.split('"').filter(is_name)).collect();
+        let names = names();
+        for name in &said {
+            assert!(KINDS.contains(name) || names.iter().any(|own| own == name), "`{name}` cannot be accepted");
+        }
+        for name in OF_REVIEW {
+            assert!(CODE.iter().any(|code| code.contains(&format!("\"{name}\""))), "nothing says `{name}`");
+        }
     }
 
     #[test]

@@ -34,7 +34,7 @@ pub struct ShaderStep {
     pub name: String,
     /// What is to be said of it.
     pub sentence: String,
-    /// Whether somebody accepts it as it is: a comment at its line, or the one who asked.
+    /// Whether it is meant as it is: a comment in the file accepts its name, or whoever asked does.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub accepted: bool,
     /// What the shader computes there.
@@ -64,6 +64,15 @@ pub struct ShaderSum {
     pub then: Vec<String>,
 }
 
+/// A comment that accepts a name that no dialect and no mistake has.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct RefusedName {
+    /// The line of the file, from 1.
+    pub line: u32,
+    /// What is wrong, and which name may be meant.
+    pub says: String,
+}
+
 /// What is found in a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ShaderReview {
@@ -81,9 +90,9 @@ pub struct ShaderReview {
     /// What was taken for what is not there, and what was left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// Comments that accept what has no such name, each with its line.
+    /// Comments that accept a name that no dialect and no mistake has.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub refused: Vec<String>,
+    pub refused: Vec<RefusedName>,
     /// Its steps, by line.
     pub steps: Vec<ShaderStep>,
     /// What its outputs are made of.

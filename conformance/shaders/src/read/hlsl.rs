@@ -2,6 +2,7 @@
 
 use super::lines::Lines;
 use super::macros::words;
+use std::collections::HashSet;
 
 /// Characters of an annotation.
 const MOST_ANNOTATION: usize = 8192;
@@ -173,11 +174,10 @@ fn annotation(text: &str) -> Option<usize> {
     None
 }
 
-/// Registers whose numbers are macros that are not there are taken off, and lines that are nothing but a macro that is not there.
+/// Takes off registers whose number is a macro that is not defined here, and lines that are nothing but such a macro.
 fn without_macros_of_hosts(own: &Lines, notes: &mut Vec<String>) -> Lines {
-    let is_defined = |name: &str| {
-        own.text.lines().any(|line| line.trim_start().starts_with("#define") && words(line).nth(1) == Some(name))
-    };
+    let defines = own.text.lines().filter(|line| line.trim_start().starts_with("#define"));
+    let defined: HashSet<&str> = defines.filter_map(|line| words(line).nth(1)).collect();
     let mut found = Lines::default();
     let mut depth = 0_i32;
     for (line, number) in own.iter() {
@@ -189,7 +189,7 @@ fn without_macros_of_hosts(own: &Lines, notes: &mut Vec<String>) -> Lines {
         let is_whole = after.is_empty() || inside.is_some_and(|inside| opening(inside) == Some(0));
         let is_lone = depth == 0 && is_macro && code.starts_with(name) && is_whole;
         depth += code.chars().map(|c| i32::from(c == '{') - i32::from(c == '}')).sum::<i32>();
-        if is_lone && !is_defined(name) {
+        if is_lone && !defined.contains(name) {
             notes.push(format!("line {number}: the macro `{name}` is not there: the line is left out"));
             found.push("", number);
             continue;
@@ -199,7 +199,7 @@ fn without_macros_of_hosts(own: &Lines, notes: &mut Vec<String>) -> Lines {
             let (number, after) = rest.trim_start().strip_prefix('(')?.split_once(')')?;
             let name = number.split(',').next().unwrap_or_default().trim();
             let is_number = name.chars().skip(1).all(|c| c.is_ascii_digit());
-            (!is_number && !is_defined(name)).then(|| format!("{before}{after}"))
+            (!is_number && !defined.contains(name)).then(|| format!("{before}{after}"))
         });
         found.push(register.as_deref().unwrap_or(line), number);
     }

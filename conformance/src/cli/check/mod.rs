@@ -25,11 +25,11 @@ use std::path::PathBuf;
 /// they are called. Each is right (✓), a dialect that has a name (~), a mistake (✗), or perhaps a mistake (?), where names alone say what a
 /// vector is. The exit code is 1 where a step is wrong, else 2 where a file cannot be read, and 3 where no step is found.
 ///
-/// What is meant as it is, `// lightmeter: accept NAME` says behind a step, above it, or on top of a file, and `--accept NAME`. A
-/// `lightmeter.toml` has in `[[shader]]` the files that are checked where none is named, and what they are read with.
+/// A dialect or a mistake that is intended is accepted by its name: `// lightmeter: accept NAME` behind the step, on the line above it or on
+/// top of the file, or `--accept NAME` for all files. Without FILE, those are checked that `[[shader]]` in `lightmeter.toml` lists.
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// Shaders in GLSL, WGSL, SPIR-V or HLSL, folders of them, and globs; without one those of lightmeter.toml
+    /// Shaders in GLSL, WGSL, SPIR-V or HLSL, folders of them, and globs; without any, those that lightmeter.toml lists
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -65,7 +65,7 @@ struct Read {
     /// A macro that the host defines; again for several
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
-    /// A dialect or a mistake, by its name, that is meant as it is; again for several
+    /// The name of a dialect or a mistake that is intended; again for several
     #[arg(long, value_name = "NAME", value_parser = accepted_name)]
     accept: Vec<String>,
 }
@@ -103,7 +103,7 @@ impl Check {
         let (mut shaders, mut notes) = (vec![], vec![]);
         for set in &sets {
             let found = worker::reviews(&set.files, &set.read, &mut bar)?;
-            // What is given is for all files.
+            // A name on the command line is for the files of all sets.
             let of_set = set.read.accept.iter().filter(|name| !self.read.accept.contains(name));
             notes.extend(of_set.filter_map(|name| unneeded(name, &found)));
             shaders.extend(found);
@@ -119,8 +119,8 @@ impl Check {
                 let notes = notes.into_iter().map(Sentence::from).collect();
                 Report { command: Some(command()), made_at: now(), seconds, shaders, notes, ..empty }.to_json()?
             }
-            CheckFormat::Junit => junit::of_shaders(&shaders, self.strict)?,
-            CheckFormat::Github => github::of_shaders(&shaders, self.strict),
+            CheckFormat::Junit => junit::of_shaders(&shaders, self.strict, &notes)?,
+            CheckFormat::Github => github::of_shaders(&shaders, self.strict, &notes),
         };
         match self.format {
             CheckFormat::Text => show(&text, self.out.as_deref())?,
@@ -130,7 +130,7 @@ impl Check {
     }
 }
 
-/// What is told of a name that is accepted and that no step has. Of a file that is not read nobody knows.
+/// A note for an accepted name that none of the files has a step of; none where a file could not be read, as it may have one.
 fn unneeded(name: &str, found: &[ShaderReview]) -> Option<String> {
     let is_open = found.iter().any(|own| own.unread.is_some());
     let is_found = found.iter().flat_map(|own| &own.steps).any(|step| step.accepted && step.name == name);

@@ -74,7 +74,7 @@ fn tell(shader: &ShaderReview, is_strict: bool, text: &mut String) -> std::fmt::
         writeln!(text, "  note: {note}")?;
     }
     for what in &shader.refused {
-        writeln!(text, "  ✗ {what}")?;
+        writeln!(text, "  ✗ line {}: {}", what.line, what.says)?;
     }
     if shader.steps.is_empty() {
         return writeln!(text);
