@@ -43,6 +43,40 @@ fn steps_are_told_with_their_lines_and_the_exit_code_says_whether_one_is_wrong()
 }
 
 #[test]
+fn steps_are_judged_as_formulas_and_what_contradicts_the_review_is_open() {
+    let own = folder("check-judged");
+    // A coefficient has a floor below most that it may be, and a Lambert factor counts both sides.
+    let text = RIGHT.replace("void main", "uniform vec3 k; varying vec3 p;\nvoid main").replace(
+        "max(dot(normalize(n), toLight), 0.0)",
+        "abs(dot(normalize(n), toLight)) / (k.x + k.y * length(p) + max(k.z, 0.03) * length(p) * length(p))",
+    );
+    let file = shader(&own, "floor.frag", &text).display().to_string();
+    for adapter in [&[][..], &["--adapter", "lavapipe"]] {
+        if !adapter.is_empty() && crate::needs::lacks_lavapipe() {
+            continue;
+        }
+        let (code, said, told) = check(&[&[&*file, "--format", "json"], adapter].concat());
+        assert_eq!(code, 1, "{said}{told}");
+        let report: Value = serde_json::from_str(&said).unwrap();
+        let steps = report["shaders"][0]["steps"].as_array().unwrap();
+        let of = |kind: &str| steps.iter().find(|step| step["kind"] == kind).unwrap();
+        let (lambert, attenuation) = (of("lambert"), of("attenuation"));
+        assert_eq!(lambert["judged"]["formula"], "lighting/diffuse-toward");
+        assert!(lambert["judged"]["random_wrong"].as_u64().unwrap() > 100, "{lambert}");
+        assert!(lambert["judged"]["explanation"].as_str().unwrap().contains("incidence-of-both-sides"), "{lambert}");
+        assert_eq!(attenuation["verdict"], "perhaps", "{attenuation}");
+        assert!(attenuation["sentence"].as_str().unwrap().contains("by attenuation/polynomial, "), "{attenuation}");
+        let by = if adapter.is_empty() { "f32" } else { "lavapipe" };
+        assert!([lambert, attenuation].iter().all(|step| step["judged"]["by"] == by), "{said}");
+    }
+    let right = shader(&own, "right.frag", RIGHT).display().to_string();
+    let (code, said, _) = check(&[&right]);
+    assert!(code == 0 && said.contains("right.frag: GLSL, 1 step, 1 judged in f32"), "{said}");
+    let (code, _, told) = check(&[&right, "--adapter", "nonsense"]);
+    assert!(code != 0 && told.contains("nonsense"), "{code} {told}");
+}
+
+#[test]
 fn a_file_that_is_not_read_is_told_and_the_others_go_on() {
     let own = folder("check-unread");
     let right = shader(&own, "right.frag", RIGHT);

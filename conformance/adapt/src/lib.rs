@@ -16,6 +16,7 @@ mod meaning;
 mod name;
 pub mod place;
 pub mod program;
+pub mod step;
 mod suggest;
 mod synonyms;
 mod unanswered;

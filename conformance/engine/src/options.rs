@@ -124,6 +124,15 @@ impl Adapted {
 }
 
 impl Options {
+    /// A formula as it is judged of the code under test.
+    #[must_use]
+    pub fn applied(&self, member: Member) -> Member {
+        match self.adapted.iter().find(|adapted| adapted.id == member.spec.id) {
+            Some(adapted) => adapted.applied(member),
+            None => member,
+        }
+    }
+
     /// A report on these subjects, of nothing yet.
     #[must_use]
     pub fn report(&self, subjects: &[Subject]) -> Report {

@@ -94,11 +94,8 @@ impl Selection {
     /// What the options select. With any case the witnesses of all deviations are asked; without, those that the filter names.
     #[must_use]
     pub fn of(options: &Options) -> Self {
-        let adapted = |member: Member| match options.adapted.iter().find(|adapted| adapted.id == member.spec.id) {
-            Some(adapted) => adapted.applied(member),
-            None => member,
-        };
-        let catalogue: Arc<[Member]> = catalogue_of(&options.samples).into_iter().map(adapted).collect();
+        let catalogue: Arc<[Member]> =
+            catalogue_of(&options.samples).into_iter().map(|member| options.applied(member)).collect();
         let formulas = select(&catalogue, &options.filter, options.cases, options.shard);
         let tables = verdict::select(&options.filter, options.shard);
         let size = lightmeter_catalogue::scene::select::size(&options.filter, options.size);
@@ -131,7 +128,7 @@ impl Selection {
         let mut catalogue = lightmeter_catalogue::select::catalogue();
         let canonical = catalogue.len();
         catalogue.extend(alias_members());
-        let catalogue: Arc<[Member]> = catalogue.into();
+        let catalogue: Arc<[Member]> = catalogue.into_iter().map(|member| options.applied(member)).collect();
         let mut formulas = select(&catalogue[..canonical], &options.filter, options.cases, options.shard);
         formulas.retain(|chosen| is_promised(&catalogue[chosen.member]));
         let blended = blended_states(&catalogue, &options.filter, options.cases, options.shard);

@@ -10,11 +10,23 @@
 //! Nothing here knows a GPU.
 
 pub mod accepted;
+mod function;
 pub mod graph;
 mod lower;
 mod templates;
 mod unify;
 
+pub use function::EvaluatedFunction;
 pub use review::Reviewer;
 pub mod read;
 mod review;
+
+use lightmeter_document::report::{StepFunction, StepVerdict};
+
+/// Each form that steps are compared with as a function, with what a step of it is.
+///
+/// # Errors
+/// Which form is not as it should be: none that is built in.
+pub fn forms() -> Result<Vec<(StepVerdict, StepFunction)>, String> {
+    Ok(templates::functions()?.into_iter().map(|(worth, own)| (worth.into(), own)).collect())
+}

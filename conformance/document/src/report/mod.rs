@@ -20,7 +20,9 @@ pub use failure::Failure;
 pub use group::{Group, Totals, WorstAnswer};
 pub use image::{BiasUnit, Departure, EffectsCost, ImageBias, ImageUse, PixelUse};
 pub use problem::{Problem, ProblemKind, Sentence};
-pub use review::{RefusedName, ShaderReview, ShaderStep, ShaderSum, StepVerdict};
+pub use review::{
+    FailingStep, JudgedStep, RefusedName, ShaderReview, ShaderStep, ShaderSum, StepFunction, StepParameter, StepVerdict,
+};
 pub use sample::{GroupSample, SampledRows, SampledStores, StoresOfState};
 pub use shader::{BoundVariable, FoundBy, HeldInput, JudgedAs, MistakePlace, ShaderUse};
 pub use stability::{Cost, Examined, StableForm};

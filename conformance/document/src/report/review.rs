@@ -1,5 +1,6 @@
 //! What is found in a shader, step by step: the JSON of `check`.
 
+use crate::thousands;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +14,7 @@ pub enum StepVerdict {
     Dialect,
     /// A mistake that has a name.
     Mistake,
-    /// A mistake, if the names in the shader mean what they say.
+    /// A mistake, if the names in the shader mean what they say; or what the review and the judgement by a formula disagree on.
     Perhaps,
 }
 
@@ -39,6 +40,98 @@ pub struct ShaderStep {
     pub accepted: bool,
     /// What the shader computes there.
     pub code: String,
+    /// The step as a function, by which it can be judged; none of a step that is no form of a value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub function: Option<StepFunction>,
+    /// What became of it where it was judged as a formula.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged: Option<JudgedStep>,
+}
+
+/// A step as a function: what a shader computes between the values that the step is of and the step's own.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct StepFunction {
+    /// Which form it is.
+    pub form: String,
+    /// A function of the name `shader_step`, in WGSL.
+    pub wgsl: String,
+    /// The form's parameters, in the order in which the form has them.
+    pub parameters: Vec<StepParameter>,
+    /// Components of its value.
+    pub components: u8,
+}
+
+/// A parameter of a form, as a shader has it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct StepParameter {
+    /// The form's name of it: `n`, `density`, …
+    pub name: String,
+    /// Whether the shader has its negative.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_negated: bool,
+    /// The bits of its numbers, where it is a constant in the shader, which `shader_step` is not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bits: Vec<u32>,
+}
+
+/// A case of a formula that a step fails.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FailingStep {
+    /// The case.
+    pub id: String,
+    /// What it gives there, and what is legal.
+    pub says: String,
+}
+
+/// How a step is judged as a formula.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct JudgedStep {
+    /// The formula.
+    pub formula: String,
+    /// Who computed the step: an adapter, or the suite's own evaluation in f32.
+    pub by: String,
+    /// Random cases that were judged.
+    pub random: u64,
+    /// Those of them of which no implementation may give the value.
+    pub random_wrong: u64,
+    /// Hard cases, and cases at boundaries, that were judged.
+    pub hard: u64,
+    /// Those of them of which no implementation may give the value.
+    pub hard_wrong: u64,
+    /// A case that it fails, a random one where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failing: Option<FailingStep>,
+    /// The mistake that explains what fails, in a sentence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explanation: Option<String>,
+    /// Why it could not be judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+}
+
+impl JudgedStep {
+    /// Whether random cases show that it is wrong: one of a hundred at least.
+    #[must_use]
+    pub const fn is_wrong(&self) -> bool {
+        self.random_wrong > 0 && self.random_wrong.saturating_mul(100) >= self.random
+    }
+
+    /// What is to be said of it, where there is something.
+    #[must_use]
+    pub fn says(&self) -> Option<String> {
+        let Self { formula, random, random_wrong, hard, hard_wrong, .. } = self;
+        if let Some(problem) = &self.problem {
+            return Some(format!("cannot be judged as {formula}: {problem}"));
+        }
+        let (wrong, all, which) = match (random_wrong, hard_wrong) {
+            (0, 0) => return None,
+            (0, _) => (hard_wrong, hard, "hard"),
+            _ => (random_wrong, random, "random"),
+        };
+        let case = self.failing.as_ref().map_or_else(String::new, |own| format!(": in {}, {}", own.id, own.says));
+        let (wrong, all) = (thousands(*wrong), thousands(*all));
+        Some(format!("by {formula}, {wrong} of {all} {which} cases are wrong{case}"))
+    }
 }
 
 impl ShaderStep {

@@ -12,6 +12,7 @@ mod tests;
 mod text;
 mod value;
 mod vector;
+mod wgsl;
 
 pub use evaluate::Evaluation;
 pub use value::Value;

@@ -2,7 +2,7 @@
 
 use super::{Binary, Function, Graph, NodeId, Op};
 
-const COMPONENTS: [char; 4] = ['x', 'y', 'z', 'w'];
+pub(super) const COMPONENTS: [char; 4] = ['x', 'y', 'z', 'w'];
 
 impl Graph {
     /// A value as text, with what is more than `depth` operations away left out.
@@ -48,7 +48,7 @@ fn number(own: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-const fn sign(op: Binary) -> &'static str {
+pub(super) const fn sign(op: Binary) -> &'static str {
     match op {
         Binary::Add => "+",
         Binary::Subtract => "-",

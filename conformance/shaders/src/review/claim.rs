@@ -7,9 +7,11 @@ use super::site::{Site, Way};
 use crate::graph::{Binary, Function, NodeId, Op, Origin};
 use crate::templates::Worth;
 use crate::unify::{Bound, Class, Length, Template};
-use lightmeter_document::report::{ShaderStep, StepVerdict};
+use lightmeter_document::report::{ShaderStep, StepFunction, StepParameter, StepVerdict};
 use std::collections::HashMap;
 
+/// Operations of a step that is made a function.
+const MOST_OPERATIONS: usize = 100;
 /// How deep a step's code is shown.
 const DEPTH: u32 = 6;
 
@@ -109,6 +111,7 @@ impl Review<'_> {
         let also = self.lines_of(site.id).into_iter().filter(|own| *own != line).collect();
         let kind = if site.kind == "divisor" { "attenuation".into() } else { site.kind.clone() };
         let code = self.code(site.id);
+        let function = self.function(site, template, &claim);
         self.say(ShaderStep {
             line,
             also,
@@ -118,7 +121,48 @@ impl Review<'_> {
             sentence: claim.sentence,
             accepted: false,
             code,
+            function,
+            judged: None,
         });
+    }
+
+    /// A step as a function of its form's parameters, where the form says what it is.
+    fn function(&self, site: &Site, template: &Template, claim: &Claim) -> Option<StepFunction> {
+        let is_of_form = StepVerdict::from(template.head.worth) == claim.verdict
+            || template.head.worth == Worth::Mistake && claim.verdict == StepVerdict::Perhaps;
+        if !is_of_form || claim.name != template.head.name {
+            return None;
+        }
+        let ids: Vec<NodeId> = site.matched.bound.iter().map(|own| own.id).collect();
+        let cone = self.graph.cone(site.id, &ids, MOST_OPERATIONS)?;
+        let (mut cut, mut parameters): (Vec<(NodeId, String)>, Vec<StepParameter>) = (vec![], vec![]);
+        for ((name, class), bound) in template.parameters.iter().zip(&site.matched.bound) {
+            let constant = self.graph.constant_of(bound.id);
+            if constant.is_none() {
+                // What the step normalises itself is a unit vector behind that.
+                let unit = if *class == Class::Unit { self.normalized(bound.id, &cone) } else { None };
+                let id = unit.unwrap_or(bound.id);
+                // One value may be two of the form's, which then is another function.
+                if cut.iter().any(|own| own.0 == id) {
+                    return None;
+                }
+                cut.push((id, name.clone()));
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "shaders compute in f32")]
+            let bits = constant.iter().flat_map(|own| own.components().to_vec()).map(|own| (own as f32).to_bits());
+            let (bits, is_negated) = (bits.collect(), bound.is_negated);
+            parameters.push(StepParameter { name: name.clone(), is_negated, bits });
+        }
+        let wgsl = self.graph.wgsl(site.id, &cut, MOST_OPERATIONS)?;
+        let components = u8::try_from(self.graph.ty(site.id).length()).ok()?;
+        Some(StepFunction { form: template.name.clone(), wgsl, parameters, components })
+    }
+
+    /// A vector of length 1 that is all that a cone has of a vector.
+    fn normalized(&self, id: NodeId, cone: &[NodeId]) -> Option<NodeId> {
+        let mut users = self.users(id).iter().filter(|own| cone.contains(own));
+        let only = users.next().filter(|_| users.next().is_none())?;
+        matches!(self.graph.op(*only), Op::Call(Function::Normalize, _)).then_some(*only)
     }
 
     pub(super) fn code(&self, id: NodeId) -> String {
@@ -381,6 +425,8 @@ impl Review<'_> {
                     sentence,
                     accepted: false,
                     code,
+                    function: None,
+                    judged: None,
                 });
                 return;
             }
@@ -500,6 +546,8 @@ impl Review<'_> {
                     sentence,
                     accepted: false,
                     code,
+                    function: None,
+                    judged: None,
                 });
             }
         }

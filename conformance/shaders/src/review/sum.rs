@@ -181,7 +181,18 @@ impl Review<'_> {
         for (verdict, name, sentence) in said {
             let code = terms.join(" + ");
             let (kind, name, sentence) = ("terms".into(), name.into(), sentence.into());
-            self.say(ShaderStep { line, also: vec![], kind, verdict, name, sentence, accepted: false, code });
+            self.say(ShaderStep {
+                line,
+                also: vec![],
+                kind,
+                verdict,
+                name,
+                sentence,
+                accepted: false,
+                code,
+                function: None,
+                judged: None,
+            });
         }
         let then = through.iter().rev().map(|own| self.sites[own].kind.clone()).collect();
         self.sums.push(ShaderSum { line, output: crate::read::shown(output), terms, then });
@@ -349,6 +360,8 @@ impl Review<'_> {
                     sentence,
                     accepted: false,
                     code: name,
+                    function: None,
+                    judged: None,
                 });
             }
         }

@@ -51,7 +51,7 @@ pub(crate) struct Library {
 }
 
 /// WGSL that declares nothing.
-pub(super) struct Plain;
+pub(crate) struct Plain;
 
 impl Declared for Plain {
     fn line(&self, _: Span) -> u32 {

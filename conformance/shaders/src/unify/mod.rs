@@ -12,7 +12,7 @@ mod tests;
 
 pub(crate) use class::Class;
 pub(crate) use length::Length;
-pub(crate) use library::{Library, Template};
+pub(crate) use library::{Library, Plain, Template};
 
 use crate::graph::{Binary, Evaluation, Function, Graph, NodeId, Op, Type, Value};
 use crate::templates::Worth;

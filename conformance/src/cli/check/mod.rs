@@ -1,6 +1,7 @@
 //! `lightmeter check`.
 
 mod files;
+mod judged;
 mod project;
 mod told;
 mod worker;
@@ -8,22 +9,28 @@ mod worker;
 pub(crate) use worker::Worker;
 
 use super::clock::now;
+use super::options::Choice;
 use super::progress::Bar;
 use super::{Status, command, emit, show, writable};
 use clap::Args;
+use lightmeter::arithmetic::Profile;
 use lightmeter::document::Document as _;
 use lightmeter::document::report::{Report, Sentence, ShaderReview};
 use lightmeter::files::lines;
 use lightmeter::nearest::did_you_mean;
+use lightmeter::options::MOST_CASES;
 use lightmeter::report::{github, junit};
 use lightmeter_shaders::accepted;
 use std::path::PathBuf;
+
+/// Random cases of a step: mistakes show in as many.
+const CASES: u64 = 256;
 
 /// Find the steps of shaders, and what is wrong with them
 ///
 /// A shader is a sum of steps: a Lambert factor, a highlight, an attenuation, fog, a gamma curve. They are found by what they compute, whatever
 /// they are called. Each is right (✓), a dialect that has a name (~), a mistake (✗), or perhaps a mistake (?), where names alone say what a
-/// vector is. The exit code is 1 where a step is wrong, else 2 where a file cannot be read, and 3 where no step is found.
+/// vector is. Steps that are a formula's are judged as that too, by random and hard cases, to the last bit. The exit code is 1 where a step is wrong, else 2 where a file cannot be read, and 3 where no step is found.
 ///
 /// A dialect or a mistake that is intended is accepted by its name: `// lightmeter: accept NAME` behind the step, on the line above it or on
 /// top of the file, or `--accept NAME` for all files. Without FILE, those are checked that `[[shader]]` in `lightmeter.toml` lists.
@@ -34,6 +41,15 @@ pub(crate) struct Check {
     files: Vec<PathBuf>,
     #[command(flatten)]
     read: Read,
+    /// Adapter that computes the steps; without it, the suite's own evaluation of shaders in f32
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Accuracy rules: wgsl, vulkan or opengl
+    #[arg(long, value_name = "NAME", default_value = "wgsl", value_parser = Choice::profile)]
+    profile: &'static Profile,
+    /// Random cases of each step
+    #[arg(long, value_name = "N", default_value_t = CASES, value_parser = clap::value_parser!(u64).range(1..=MOST_CASES))]
+    cases: u64,
     /// Count a dialect as wrong, unless it is accepted
     #[arg(long)]
     strict: bool,
@@ -97,12 +113,13 @@ impl Check {
             anyhow::bail!("`-I {}`: there is no such folder", folder.display());
         }
         let start = std::time::Instant::now();
+        let mut judge = judged::Judge::new(self.adapter.as_deref(), self.profile, self.cases)?;
         let sets = project::sets(&self.files, &self.read)?;
         let number: usize = sets.iter().map(|set| set.files.len()).sum();
         let mut bar = Bar::new(Some(number as u64), "files");
         let (mut shaders, mut notes) = (vec![], vec![]);
         for set in &sets {
-            let found = worker::reviews(&set.files, &set.read, &mut bar)?;
+            let found = worker::reviews(&set.files, &set.read, &mut judge, &mut bar)?;
             // A name on the command line is for the files of all sets.
             let of_set = set.read.accept.iter().filter(|name| !self.read.accept.contains(name));
             notes.extend(of_set.filter_map(|name| unneeded(name, &found)));

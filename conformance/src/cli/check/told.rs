@@ -1,6 +1,6 @@
 //! What is found in shaders, in words.
 
-use lightmeter::document::report::{ShaderReview, ShaderStep, ShaderSum, StepVerdict};
+use lightmeter::document::report::{JudgedStep, ShaderReview, ShaderStep, ShaderSum, StepVerdict};
 use std::fmt::Write as _;
 
 /// Characters of a source line that are shown.
@@ -66,10 +66,13 @@ fn tell(shader: &ShaderReview, is_strict: bool, text: &mut String) -> std::fmt::
         let colon = if why.starts_with(|c: char| c.is_ascii_digit()) { ":" } else { ": " };
         return writeln!(text, "{}{colon}{why}\n", shader.file);
     }
-    let by = if shader.reader == "naga" { String::new() } else { format!(" (read by {})", shader.reader) };
+    let reader = if shader.reader == "naga" { String::new() } else { format!(" (read by {})", shader.reader) };
     let steps =
         if shader.steps.is_empty() { "no step that is known".to_owned() } else { number(shader.steps.len(), "step") };
-    writeln!(text, "{}: {}{by}, {steps}", shader.file, shader.language)?;
+    let judged: Vec<&JudgedStep> = shader.steps.iter().filter_map(|step| step.judged.as_ref()).collect();
+    let by = |own: &str| if own == "f32" { "in f32".to_owned() } else { format!("on {own}") };
+    let judged = judged.first().map_or_else(String::new, |own| format!(", {} judged {}", judged.len(), by(&own.by)));
+    writeln!(text, "{}: {}{reader}, {steps}{judged}", shader.file, shader.language)?;
     for note in &shader.notes {
         writeln!(text, "  note: {note}")?;
     }
@@ -115,10 +118,19 @@ fn tell_step(step: &ShaderStep, source: &str, width: usize, text: &mut String) -
     let accepted = if step.accepted { " (accepted)" } else { "" };
     let shown = cut(shown, MOST_SOURCE);
     writeln!(text, "{place:>5}  {:<width$}  {shown:<MOST_SOURCE$}  {}{name}{accepted}", step.kind, mark(step.verdict))?;
+    let indent = " ".repeat(9 + width);
+    let options = textwrap::Options::new(WIDTH)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation)
+        .initial_indent(&indent)
+        .subsequent_indent(&indent);
     if step.verdict != StepVerdict::Right {
-        let indent = " ".repeat(9 + width);
-        let options = textwrap::Options::new(WIDTH).initial_indent(&indent).subsequent_indent(&indent);
-        writeln!(text, "{}", textwrap::fill(&step.sentence, options))?;
+        writeln!(text, "{}", textwrap::fill(&step.sentence, &options))?;
+    }
+    // What contradicts the review is in its sentence.
+    if let Some(said) = step.judged.as_ref().and_then(JudgedStep::says)
+        && !step.sentence.contains(&said)
+    {
+        writeln!(text, "{}", textwrap::fill(&said, options))?;
     }
     Ok(())
 }

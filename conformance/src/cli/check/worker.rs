@@ -7,6 +7,7 @@ use super::super::observed::is_time_told;
 use super::super::progress::Bar;
 use super::super::{Status, foreign::limit_time};
 use super::Read;
+use super::judged::Judge;
 use anyhow::Context as _;
 use clap::Args;
 use lightmeter::document::report::ShaderReview;
@@ -144,19 +145,26 @@ impl Process {
     }
 }
 
-/// The reviews of files that are read with the same, in their order.
-pub(super) fn reviews(files: &[PathBuf], read: &Read, bar: &mut Bar) -> anyhow::Result<Vec<ShaderReview>> {
+/// The reviews of files that are read with the same, in their order, their steps judged.
+pub(super) fn reviews(
+    files: &[PathBuf],
+    read: &Read,
+    judge: &mut Judge,
+    bar: &mut Bar,
+) -> anyhow::Result<Vec<ShaderReview>> {
     let mut process = Process::start(read)?;
     let mut found = vec![];
     for file in files {
-        found.push(match process.review(file) {
+        let mut review = match process.review(file) {
             Ok(review) => review,
             Err(why) => {
                 process.end();
                 process = Process::start(read)?;
                 unread(file, &why)
             }
-        });
+        };
+        judge.judge(&mut review)?;
+        found.push(review);
         bar.bar.inc(1);
     }
     process.end();
