@@ -57,15 +57,15 @@ fn steps_are_judged_as_formulas_and_what_contradicts_the_review_is_open() {
         }
         let (code, said, told) = check(&[&[&*file, "--format", "json"], adapter].concat());
         assert_eq!(code, 1, "{said}{told}");
-        let report: Value = serde_json::from_str(&said).unwrap();
-        let steps = report["shaders"][0]["steps"].as_array().unwrap();
-        let of = |kind: &str| steps.iter().find(|step| step["kind"] == kind).unwrap();
+        let report: Value = serde_json::from_str(&said).expect("JSON");
+        let steps = report["shaders"][0]["steps"].as_array().expect("steps");
+        let of = |kind: &str| steps.iter().find(|step| step["kind"] == kind).expect("a step of the kind");
         let (lambert, attenuation) = (of("lambert"), of("attenuation"));
         assert_eq!(lambert["judged"]["formula"], "lighting/diffuse-toward");
-        assert!(lambert["judged"]["random_wrong"].as_u64().unwrap() > 100, "{lambert}");
-        assert!(lambert["judged"]["explanation"].as_str().unwrap().contains("incidence-of-both-sides"), "{lambert}");
+        assert!(lambert["judged"]["random_wrong"].as_u64() > Some(100), "{lambert}");
+        assert!(lambert["judged"]["explanation"].to_string().contains("incidence-of-both-sides"), "{lambert}");
         assert_eq!(attenuation["verdict"], "perhaps", "{attenuation}");
-        assert!(attenuation["sentence"].as_str().unwrap().contains("by attenuation/polynomial, "), "{attenuation}");
+        assert!(attenuation["sentence"].to_string().contains("by attenuation/polynomial, "), "{attenuation}");
         let by = if adapter.is_empty() { "f32" } else { "lavapipe" };
         assert!([lambert, attenuation].iter().all(|step| step["judged"]["by"] == by), "{said}");
     }
@@ -74,6 +74,44 @@ fn steps_are_judged_as_formulas_and_what_contradicts_the_review_is_open() {
     assert!(code == 0 && said.contains("right.frag: GLSL, 1 step, 1 judged in f32"), "{said}");
     let (code, _, told) = check(&[&right, "--adapter", "nonsense"]);
     assert!(code != 0 && told.contains("nonsense"), "{code} {told}");
+}
+
+#[test]
+fn code_scanning_and_people_are_shown_where_a_step_is_wrong() {
+    let own = folder("check-shown");
+    let text = RIGHT
+        .replace("void main", "// <script>alert(1)</script>\nvoid main")
+        .replace("max(dot(normalize(n), toLight), 0.0)", "abs(dot(normalize(n), toLight))");
+    let wrong = shader(&own, "a b.frag", &text).display().to_string();
+    let lost = own.join("lost.frag").display().to_string();
+    let (code, said, _) = check(&[&wrong, &lost, "--format", "sarif"]);
+    assert_eq!(code, 1, "{said}");
+    let log: Value = serde_json::from_str(&said).expect("JSON");
+    let run = &log["runs"][0];
+    let result = &run["results"][0];
+    assert_eq!(
+        (&log["version"], &result["ruleId"], &result["level"]),
+        (&"2.1.0".into(), &"incidence-of-both-sides".into(), &"error".into())
+    );
+    assert_eq!(run["tool"]["driver"]["rules"][0]["id"], "incidence-of-both-sides");
+    let place = &result["locations"][0]["physicalLocation"];
+    assert!(
+        place["artifactLocation"]["uri"].to_string().contains("/a%20b.frag") && place["region"]["startLine"] == 5,
+        "{place}"
+    );
+    assert_eq!(run["invocations"][0]["executionSuccessful"], false);
+    assert!(run["invocations"][0]["toolExecutionNotifications"].to_string().contains("lost.frag"), "{said}");
+    let accepted = ["--accept", "incidence-of-both-sides"];
+    let (code, said, _) = check(&[&[&*wrong, "--format", "sarif"], &accepted[..]].concat());
+    assert!(code == 0 && said.contains("\"suppressions\"") && said.contains("\"executionSuccessful\": true"), "{said}");
+    let (code, page, _) = check(&[&wrong, &lost, "--format", "html"]);
+    assert_eq!(code, 1);
+    assert!(
+        page.contains("2 shaders: 1 of 1 step wrong") && page.contains("<code>incidence-of-both-sides</code>"),
+        "{page}"
+    );
+    assert!(page.contains("&lt;script&gt;alert(1)") && !page.contains("<script>alert(1)"), "{page}");
+    assert!(page.contains("not read: ") && page.contains("by lighting/diffuse-toward, 135 of 256"), "{page}");
 }
 
 #[test]

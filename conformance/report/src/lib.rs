@@ -14,6 +14,7 @@ pub mod mistakes;
 pub mod page;
 #[cfg(feature = "pages")]
 mod plot;
+pub mod sarif;
 #[cfg(feature = "pages")]
 pub mod selftest;
 pub mod special;

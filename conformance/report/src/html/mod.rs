@@ -14,6 +14,7 @@ mod overview;
 mod page;
 mod plot;
 mod scene;
+mod shader;
 mod verdict;
 
 pub use equation::equation;
@@ -21,6 +22,7 @@ pub use markdown::{markdown, own_markdown};
 pub use number::written;
 pub use page::{PageKind, embedded, page, prose};
 pub use plot::course as course_plot;
+pub use shader::of_shaders;
 
 use crate::against::{BASELINE, lines};
 use crate::bench::{page as bench_page, plot as bench_plot};

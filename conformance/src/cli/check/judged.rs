@@ -12,7 +12,7 @@ use lightmeter::document::event::Silent;
 use lightmeter::document::report::{
     FailingStep, Failure, Group, JudgedStep, Report, ShaderReview, ShaderStep, StepVerdict,
 };
-use lightmeter::document::thousands;
+use lightmeter::document::{Number, thousands};
 use lightmeter::faults::Mistakes;
 use lightmeter::filter::Filter;
 use lightmeter::gate::hello::Hello;
@@ -165,9 +165,18 @@ fn counted(report: &Report, random: u64, mut judged: JudgedStep) -> JudgedStep {
     judged.failing =
         random.or_else(|| report.failures.first()).map(|Failure { id, output, value, interval, .. }| {
             let [low, high] = interval;
-            FailingStep { id: id.clone(), says: format!("{output} is {value}, where {low} to {high} is legal") }
+            let [value, low, high] = [value, low, high].map(|own| short(own.0));
+            let legal = if low == high { format!("only {low}") } else { format!("{low} to {high}") };
+            FailingStep { id: id.clone(), says: format!("{output} is {value}, where {legal} is legal") }
         });
     judged
+}
+
+/// A number with as many digits as f32 has.
+fn short(number: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, reason = "as many digits as are told")]
+    let own = number as f32;
+    Number(own.to_string().parse().unwrap_or(number)).to_string()
 }
 
 fn count(group: &Group, judged: &mut JudgedStep) {
@@ -207,12 +216,13 @@ mod tests {
 
     #[test]
     fn each_form_is_what_its_formula_says_or_the_engine_sees_that_it_is_not() {
-        let (mut judge, forms) = (Judge::new(None, &WGSL, 256).unwrap(), forms().unwrap());
+        let (mut judge, forms) =
+            (Judge::new(None, &WGSL, 256).expect("f32 needs nothing"), forms().expect("forms are built in"));
         for (form, formula) in judged_forms() {
             let (verdict, function) = forms.iter().find(|(_, own)| own.form == form).expect(form);
             let member = judge.catalogue.iter().find(|member| member.spec.id == formula).expect(formula);
             let own = step_formula(function, &member.spec).expect(form);
-            let judged = judge.judged(&own).unwrap();
+            let judged = judge.judged(&own).expect("nothing ends");
             assert_eq!(judged.problem, None, "{form}");
             assert!(judged.random > 0, "{form}");
             match verdict {

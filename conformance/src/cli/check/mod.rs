@@ -19,7 +19,7 @@ use lightmeter::document::report::{Report, Sentence, ShaderReview};
 use lightmeter::files::lines;
 use lightmeter::nearest::did_you_mean;
 use lightmeter::options::MOST_CASES;
-use lightmeter::report::{github, junit};
+use lightmeter::report::{github, html, junit, sarif};
 use lightmeter_shaders::accepted;
 use std::path::PathBuf;
 
@@ -70,6 +70,10 @@ enum CheckFormat {
     Junit,
     /// Lines that GitHub Actions shows as annotations
     Github,
+    /// For code scanning and editors
+    Sarif,
+    /// A page with each source and its steps beside it
+    Html,
 }
 
 /// What shaders are read with.
@@ -138,6 +142,11 @@ impl Check {
             }
             CheckFormat::Junit => junit::of_shaders(&shaders, self.strict, &notes)?,
             CheckFormat::Github => github::of_shaders(&shaders, self.strict, &notes),
+            CheckFormat::Sarif => format!("{:#}\n", sarif::of_shaders(&shaders, self.strict, &notes)),
+            CheckFormat::Html => {
+                let with_source = |own| (own, source_of(own));
+                html::of_shaders(&shaders.iter().map(with_source).collect::<Vec<_>>(), self.strict, &notes)
+            }
         };
         match self.format {
             CheckFormat::Text => show(&text, self.out.as_deref())?,
@@ -145,6 +154,12 @@ impl Check {
         }
         Ok(status)
     }
+}
+
+/// The text of a file, with each line's end as \n.
+fn source_of(shader: &ShaderReview) -> String {
+    let text = std::fs::read(&shader.file).unwrap_or_default();
+    String::from_utf8_lossy(&text).replace("\r\n", "\n").replace('\r', "\n")
 }
 
 /// A note for an accepted name that none of the files has a step of; none where a file could not be read, as it may have one.

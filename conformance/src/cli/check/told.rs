@@ -1,5 +1,6 @@
 //! What is found in shaders, in words.
 
+use super::source_of;
 use lightmeter::document::report::{JudgedStep, ShaderReview, ShaderStep, ShaderSum, StepVerdict};
 use std::fmt::Write as _;
 
@@ -83,9 +84,7 @@ fn tell(shader: &ShaderReview, is_strict: bool, text: &mut String) -> std::fmt::
         return writeln!(text);
     }
     writeln!(text)?;
-    let source = std::fs::read(&shader.file)
-        .map(|bytes| String::from_utf8_lossy(&bytes).replace("\r\n", "\n").replace('\r', "\n"));
-    let source = source.unwrap_or_default();
+    let source = source_of(shader);
     let width = shader.steps.iter().map(|step| step.kind.len()).max().unwrap_or(0);
     for step in &shader.steps {
         tell_step(step, &source, width, text)?;
