@@ -45,12 +45,12 @@ fn steps_are_told_with_their_lines_and_the_exit_code_says_whether_one_is_wrong()
 #[test]
 fn steps_are_judged_as_formulas_and_what_contradicts_the_review_is_open() {
     let own = folder("check-judged");
-    // A coefficient has a floor below most that it may be, and a Lambert factor counts both sides.
+    // The logarithm of e has five digits, and a Lambert factor counts both sides.
     let text = RIGHT.replace("void main", "uniform vec3 k; varying vec3 p;\nvoid main").replace(
-        "max(dot(normalize(n), toLight), 0.0)",
-        "abs(dot(normalize(n), toLight)) / (k.x + k.y * length(p) + max(k.z, 0.03) * length(p) * length(p))",
+        "vec4(max(dot(normalize(n), toLight), 0.0))",
+        "mix(vec4(k, 1.0), vec4(abs(dot(normalize(n), toLight))), exp2(-1.4427 * k.x * length(p)))",
     );
-    let file = shader(&own, "floor.frag", &text).display().to_string();
+    let file = shader(&own, "digits.frag", &text).display().to_string();
     for adapter in [&[][..], &["--adapter", "lavapipe"]] {
         if !adapter.is_empty() && crate::needs::lacks_lavapipe() {
             continue;
@@ -60,20 +60,71 @@ fn steps_are_judged_as_formulas_and_what_contradicts_the_review_is_open() {
         let report: Value = serde_json::from_str(&said).expect("JSON");
         let steps = report["shaders"][0]["steps"].as_array().expect("steps");
         let of = |kind: &str| steps.iter().find(|step| step["kind"] == kind).expect("a step of the kind");
-        let (lambert, attenuation) = (of("lambert"), of("attenuation"));
+        let (lambert, fog) = (of("lambert"), of("fog"));
         assert_eq!(lambert["judged"]["formula"], "lighting/diffuse-toward");
         assert!(lambert["judged"]["random_wrong"].as_u64() > Some(100), "{lambert}");
         assert!(lambert["judged"]["explanation"].to_string().contains("incidence-of-both-sides"), "{lambert}");
-        assert_eq!(attenuation["verdict"], "perhaps", "{attenuation}");
-        assert!(attenuation["sentence"].to_string().contains("by attenuation/polynomial, "), "{attenuation}");
+        assert_eq!((&fog["verdict"], &fog["name"]), (&"perhaps".into(), &"contradicted".into()), "{fog}");
+        assert!(fog["sentence"].to_string().contains("by fog/exp-radial, "), "{fog}");
         let by = if adapter.is_empty() { "f32" } else { "lavapipe" };
-        assert!([lambert, attenuation].iter().all(|step| step["judged"]["by"] == by), "{said}");
+        assert!([lambert, fog].iter().all(|step| step["judged"]["by"] == by), "{said}");
     }
     let right = shader(&own, "right.frag", RIGHT).display().to_string();
     let (code, said, _) = check(&[&right]);
     assert!(code == 0 && said.contains("right.frag: GLSL, 1 step, 1 judged in f32"), "{said}");
     let (code, _, told) = check(&[&right, "--adapter", "nonsense"]);
-    assert!(code != 0 && told.contains("nonsense"), "{code} {told}");
+    assert!(code == 2 && told.contains("nonsense"), "{code} {told}");
+    for option in [["--cases", "0"], ["--profile", "nonsense"]] {
+        let (code, _, told) = check(&[&[&*right], &option[..]].concat());
+        assert!(code == 2 && told.contains(option[0]), "{code} {told}");
+    }
+}
+
+#[test]
+fn right_steps_with_constants_and_signs_are_right_by_their_formulas_wherever_they_are_computed() {
+    let own = folder("check-constants");
+    let text = "#version 330
+in vec3 n; in vec3 p; uniform vec3 eye; uniform vec3 lamp; uniform vec3 axis; out vec4 color;
+const vec3 toward = vec3(0.0, 0.6, 0.8);
+void main() {
+  vec3 N = normalize(n); vec3 V = normalize(eye - p); vec3 L = normalize(lamp - p);
+  float d = length(lamp - p);
+  float one = max(dot(N, toward), 0.0);
+  float two = max(-dot(N, -L), 0.0);
+  float three = pow(max(dot(reflect(-L, N), V), 0.0), 32.0);
+  float four = pow(max(dot(N, normalize(V + toward)), 0.0), 64.0);
+  float five = 1.0 / (1.0 + 0.09 * d + 0.032 * d * d);
+  float six = dot(-L, axis) >= 0.9 ? 1.0 : 0.0;
+  float seven = exp(-0.05 * length(p));
+  color = vec4(mix(vec3(0.5), vec3((one + two + three + four) * five * six), seven), 1.0);
+}
+";
+    let file = shader(&own, "constants.frag", text).display().to_string();
+    for adapter in [&[][..], &["--adapter", "lavapipe"]] {
+        if !adapter.is_empty() && crate::needs::lacks_lavapipe() {
+            continue;
+        }
+        let (code, said, _) = check(&[&[&*file, "--format", "json"], adapter].concat());
+        assert_eq!(code, 0, "{said}");
+        let report: Value = serde_json::from_str(&said).expect("JSON");
+        let steps = report["shaders"][0]["steps"].as_array().expect("steps");
+        let judged: Vec<&Value> = steps.iter().filter(|step| step["judged"].is_object()).collect();
+        let formulas: Vec<&str> = judged.iter().filter_map(|step| step["judged"]["formula"].as_str()).collect();
+        let all = [
+            "lighting/diffuse-toward",
+            "lighting/diffuse-toward",
+            "lighting/phong",
+            "lighting/blinn",
+            "attenuation/polynomial",
+            "fog/exp-radial",
+            "attenuation/spot-cutoff",
+        ];
+        assert_eq!(formulas, all, "{said}");
+        for step in judged {
+            assert!(step["judged"]["random_wrong"] == 0 && step["judged"]["random"].as_u64() >= Some(256), "{step}");
+            assert!(step["judged"]["problem"].is_null() && step["verdict"] == "right", "{step}");
+        }
+    }
 }
 
 #[test]

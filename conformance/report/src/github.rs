@@ -103,7 +103,7 @@ pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool, notes: &[String]) -
             out += &annotation(
                 &at(kind, step.line),
                 title.trim_end_matches([':', ' ']),
-                &format!("{}{accepted}", step.sentence),
+                &format!("{}{accepted}", step.says()),
             );
         }
         for note in &shader.notes {

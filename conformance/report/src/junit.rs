@@ -68,14 +68,14 @@ pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool, notes: &[String]) -
             let mut status = TestCaseStatus::success();
             if step.is_wrong(is_strict) {
                 status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-                status.set_message(format!("{}: {}", step.name, step.sentence));
+                status.set_message(format!("{}: {}", step.name, step.says()));
             }
             let mut case = TestCase::new(format!("{} {}", step.line, step.kind), status);
             case.set_classname(shader.file.as_str());
             case.extra.insert("file".into(), shader.file.as_str().into());
             case.extra.insert("line".into(), step.line.to_string().into());
             if step.verdict != StepVerdict::Right && !step.is_wrong(is_strict) {
-                case.set_system_out(format!("{}: {}", step.name, step.sentence));
+                case.set_system_out(format!("{}: {}", step.name, step.says()));
             }
             suite.add_test_case(case);
         }

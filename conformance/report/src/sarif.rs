@@ -63,7 +63,7 @@ pub fn of_shaders(shaders: &[ShaderReview], is_strict: bool, notes: &[String]) -
             "ruleId": rule,
             "ruleIndex": rules.keys().position(|own| own == rule),
             "level": level(&step, is_strict),
-            "message": { "text": format!("{}: {}", step.kind, step.sentence) },
+            "message": { "text": format!("{}: {}", step.kind, step.says()) },
             "locations": place(&file, step.line),
         });
         if step.accepted {

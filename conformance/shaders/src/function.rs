@@ -3,6 +3,7 @@
 use crate::graph::{Evaluation, Graph, NodeId, Value};
 use crate::lower::Lowering;
 use crate::unify::Plain;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// Operations that a function has at most.
 const MOST_OPERATIONS: usize = 4096;
@@ -23,6 +24,9 @@ impl EvaluatedFunction {
     /// Where the text is no WGSL, or there is no such function, or it uses what the graph has not.
     pub fn new(wgsl: &str, name: &str) -> Result<Self, String> {
         let module = naga::front::wgsl::parse_str(wgsl).map_err(|error| error.emit_to_string(wgsl))?;
+        // What no driver would take is no function either.
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+        validator.validate(&module).map_err(|error| error.emit_to_string(wgsl))?;
         let found = module.functions.iter().find(|(_, own)| own.name.as_deref() == Some(name));
         let (_, function) = found.ok_or_else(|| format!("there is no function `{name}`"))?;
         let mut lowering = Lowering::new(&module, &Plain);
@@ -44,7 +48,10 @@ impl EvaluatedFunction {
     }
 
     fn evaluations(&self) -> Option<Vec<Evaluation<'_>>> {
-        self.outputs.iter().map(|root| Evaluation::new(&self.graph, *root, &self.cut, MOST_OPERATIONS)).collect()
+        self.outputs
+            .iter()
+            .map(|root| Evaluation::new(&self.graph, *root, &self.cut, MOST_OPERATIONS).map(Evaluation::of_numbers))
+            .collect()
     }
 
     /// Its value's numbers for each row of its parameters' numbers, one row after the other.

@@ -130,11 +130,27 @@ impl JudgedStep {
         };
         let case = self.failing.as_ref().map_or_else(String::new, |own| format!(": in {}, {}", own.id, own.says));
         let (wrong, all) = (thousands(*wrong), thousands(*all));
-        Some(format!("by {formula}, {wrong} of {all} {which} cases are wrong{case}"))
+        let are = if wrong == "1" { "is" } else { "are" };
+        Some(format!("by {formula}, {wrong} of {all} {which} cases {are} wrong{case}"))
     }
 }
 
 impl ShaderStep {
+    /// What is to be said of it, with what became of it as a formula.
+    #[must_use]
+    pub fn says(&self) -> String {
+        match self.judged_says() {
+            Some(said) => format!("{}; {said}", self.sentence),
+            None => self.sentence.clone(),
+        }
+    }
+
+    /// What is to be said of it as a formula, where its sentence does not say so.
+    #[must_use]
+    pub fn judged_says(&self) -> Option<String> {
+        self.judged.as_ref()?.says().filter(|said| !self.sentence.contains(said.as_str()))
+    }
+
     /// Whether it counts as wrong: a mistake that nobody accepts, and a dialect where that is asked for.
     #[must_use]
     pub fn is_wrong(&self, is_strict: bool) -> bool {

@@ -1,7 +1,7 @@
 //! Shaders as a page: each one's source with its steps beside it.
 
 use super::page::{PageKind, page};
-use lightmeter_document::report::{JudgedStep, ShaderReview, ShaderStep, StepVerdict};
+use lightmeter_document::report::{ShaderReview, ShaderStep, StepVerdict};
 use maud::{Markup, html};
 
 /// A verdict's mark, and the class that it is shown by.
@@ -19,7 +19,7 @@ const fn shown(step: &ShaderStep) -> (&'static str, &'static str) {
 fn step(step: &ShaderStep) -> Markup {
     let (mark, class) = shown(step);
     let judged = step.judged.as_ref();
-    let said = judged.and_then(JudgedStep::says).filter(|said| !step.sentence.contains(said.as_str()));
+    let said = step.judged_says();
     html! {
         div .step .(class) {
             strong { (mark) " " (step.kind) }

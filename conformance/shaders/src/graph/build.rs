@@ -201,6 +201,12 @@ impl Graph {
                 let product = self.binary(Binary::Multiply, inner, y);
                 return self.negate(product);
             }
+            // A sign that a constant has is the product's.
+            if let Some(number) = self.number_of(y).filter(|own| *own < 0.0) {
+                let factor = self.constant(self.ty(y), &vec![-number; self.ty(y).length()]);
+                let product = self.binary(Binary::Multiply, x, factor);
+                return self.negate(product);
+            }
             // v · (1/|v|)
             if let Op::Binary(Binary::Divide, one, length) = *self.op(y)
                 && self.is_number(one, 1.0)

@@ -1,9 +1,9 @@
 //! Evaluates the part of a graph between a value and a cut, many times.
 
 use super::value::apply;
-use super::{Graph, NodeId, Op, Type, Value};
+use super::{Function, Graph, NodeId, Op, Type, Value};
 use num_traits::Float;
-use smallvec::SmallVec;
+use smallvec::{SmallVec, smallvec};
 
 /// What is computed between a value and a cut, made ready to be evaluated for values of the cut.
 #[derive(Debug)]
@@ -14,6 +14,8 @@ pub struct Evaluation<'a> {
     constants: Vec<(usize, Value<f64>)>,
     places: usize,
     root: usize,
+    /// Whether the least and the greatest of a number and of what is none are the number, as processors have it.
+    is_of_numbers: bool,
 }
 
 impl<'a> Evaluation<'a> {
@@ -24,8 +26,14 @@ impl<'a> Evaluation<'a> {
         let place = |id: NodeId| {
             cut.iter().position(|own| *own == id).or_else(|| cone.binary_search(&id).ok().map(|k| k + cut.len()))
         };
-        let mut own =
-            Self { graph, steps: vec![], constants: vec![], places: cut.len() + cone.len(), root: place(root)? };
+        let mut own = Self {
+            graph,
+            steps: vec![],
+            constants: vec![],
+            places: cut.len() + cone.len(),
+            root: place(root)?,
+            is_of_numbers: false,
+        };
         for (k, id) in cone.iter().enumerate() {
             let here = cut.len() + k;
             match graph.op(*id) {
@@ -40,6 +48,13 @@ impl<'a> Evaluation<'a> {
         Some(own)
     }
 
+    /// The same, where the least and the greatest of a number and of what is none are the number. Shading languages leave that open.
+    #[must_use]
+    pub const fn of_numbers(mut self) -> Self {
+        self.is_of_numbers = true;
+        self
+    }
+
     /// The value, given those of the cut.
     pub fn value<N: Float>(&self, given: &[Value<N>], buffer: &mut Vec<Value<N>>) -> Value<N> {
         buffer.clear();
@@ -50,8 +65,11 @@ impl<'a> Evaluation<'a> {
             buffer[*place] = constant.components().iter().map(number).collect();
         }
         for (id, operands, place) in &self.steps {
-            let values: SmallVec<[Value<N>; 4]> = operands.iter().map(|operand| buffer[*operand]).collect();
+            let mut values: SmallVec<[Value<N>; 4]> = operands.iter().map(|operand| buffer[*operand]).collect();
             let own = self.graph.op(*id);
+            if self.is_of_numbers && matches!(own, Op::Call(Function::Min | Function::Max, _)) {
+                values = smallvec![values[0].or(&values[1]), values[1].or(&values[0])];
+            }
             let types: SmallVec<[Type; 4]> = own.operands().iter().map(|operand| self.graph.ty(*operand)).collect();
             buffer[*place] = apply(own, self.graph.ty(*id), &values, &types);
         }

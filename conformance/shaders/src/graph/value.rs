@@ -48,6 +48,11 @@ impl<N: Float> Value<N> {
         self
     }
 
+    /// The same, with another's components where it has what is no number.
+    pub(super) fn or(&self, other: &Self) -> Self {
+        Self::of_length(self.length, |k| if self.components[k].is_nan() { other.at(k) } else { self.components[k] })
+    }
+
     pub(crate) fn dot(&self, other: &Self) -> N {
         self.components().iter().zip(other.components()).fold(N::zero(), |sum, (a, b)| sum + *a * *b)
     }

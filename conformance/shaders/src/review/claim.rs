@@ -111,7 +111,8 @@ impl Review<'_> {
         let also = self.lines_of(site.id).into_iter().filter(|own| *own != line).collect();
         let kind = if site.kind == "divisor" { "attenuation".into() } else { site.kind.clone() };
         let code = self.code(site.id);
-        let function = self.function(site, template, &claim);
+        // A cone that is made like a highlight is none.
+        let function = if is_cone { None } else { self.function(site, template, &claim) };
         self.say(ShaderStep {
             line,
             also,
@@ -130,7 +131,9 @@ impl Review<'_> {
     fn function(&self, site: &Site, template: &Template, claim: &Claim) -> Option<StepFunction> {
         let is_of_form = StepVerdict::from(template.head.worth) == claim.verdict
             || template.head.worth == Worth::Mistake && claim.verdict == StepVerdict::Perhaps;
-        if !is_of_form || claim.name != template.head.name {
+        // What is a claim only by how it is used shows nothing by itself.
+        let is_by_use = template.head.worth == Worth::Mistake && template.head.is_weak;
+        if !is_of_form || claim.name != template.head.name || is_by_use || !self.graph.ty(site.id).is_float() {
             return None;
         }
         let ids: Vec<NodeId> = site.matched.bound.iter().map(|own| own.id).collect();

@@ -74,15 +74,16 @@ impl Class {
         let (low, high) = match self {
             Self::Unit => (-1.0, 1.0),
             Self::Vector | Self::Matrix => (-1.7, 1.7),
-            Self::Positive => (0.07, 2.3),
+            Self::Positive => (0.004, 2.3),
             Self::Any => (-1.3, 2.1),
             Self::Cosine => (-0.95, 0.95),
             Self::Exponent => (1.5, 9.0),
             Self::Share => (0.03, 0.97),
             Self::Color => (0.0005, 0.95),
         };
-        // Transfer functions have their thresholds near black.
+        // Transfer functions have their thresholds near black, and coefficients have floors near 0.
         let place = |random: &mut Random| match self {
+            Self::Positive => random.share().powi(2),
             Self::Color => random.share().powi(3),
             _ => random.share(),
         };

@@ -177,6 +177,23 @@ impl<'a> Finder<'a> {
         })
     }
 
+    /// Whether a coefficient or an exponent is made of what else the form is of: kq·d is no coefficient of d².
+    fn has_parameter_of_another(&self, template: &Template, bound: &[Bound]) -> bool {
+        let is_variable = |k: usize| {
+            let (name, class) = &template.parameters[k];
+            matches!(class, Class::Unit | Class::Vector) || matches!(&**name, "d" | "x")
+        };
+        let variables: Vec<NodeId> = (0..bound.len()).filter(|k| is_variable(*k)).map(|k| bound[k].id).collect();
+        let is_made = |own: &Bound| {
+            let parts = self.graph.all_of(own.id);
+            variables.iter().any(|id| parts.binary_search(id).is_ok())
+        };
+        let is_coefficient = |k: usize| {
+            !is_variable(k) && matches!(template.parameters[k].1, Class::Positive | Class::Exponent | Class::Cosine)
+        };
+        (0..bound.len()).any(|k| is_coefficient(k) && is_made(&bound[k]))
+    }
+
     /// A match with how much speaks for it; none if something speaks against it.
     fn weighed(&mut self, id: NodeId, cut: &Cut, form: &Form, is_exact: bool, trial: &Trial<'_>) -> Option<Match> {
         let template = &self.library.templates[form.template];
@@ -189,6 +206,9 @@ impl<'a> Finder<'a> {
             bound.push(Bound { id: node, is_negated: form.negated[slot], by_length });
         }
         self.lengths_fit(template, &bound).then_some(())?;
+        if self.has_parameter_of_another(template, &bound) {
+            return None;
+        }
         // A steep ramp is no edge, however few values lie on it.
         let is_edge = ["spot_hard", "spot_gate", "spot_turned"].iter().any(|name| template.name.starts_with(name));
         if is_edge && !self.has_edge(id, cut, &bound) {
@@ -206,7 +226,7 @@ impl<'a> Finder<'a> {
             Worth::Mistake => 0,
         };
         score -= if template.head.is_weak { 30 } else { 0 };
-        score -= if is_exact { 0 } else { 2 };
+        score -= if is_exact { 0 } else { 4 };
         let explained = self.graph.cone(id, cut, MOST_OPERATIONS).map_or(0, |cone| cone.len());
         score += i64::try_from(explained).unwrap_or(0);
         score = score * 1000 - i64::try_from(template.order).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Steps that are judged as formulas: the review says which a step is, the engine whether it is right to the last bit.
+//! Steps that are judged as formulas: the review says which a step is, the engine whether its values are legal.
 //!
 //! What a shader computes between the values that a step is of and the step's own is a function in WGSL; what else the step's formula is of
 //! stands around it, right. An adapter computes that, or the suite's own evaluation of shaders in f32.
@@ -30,6 +30,11 @@ use lightmeter_shaders::EvaluatedFunction;
 use lightmeter_shaders::read::{Language, ShaderSource};
 use std::collections::HashMap;
 use std::path::Path;
+
+/// Fewer random cases than that show of no mistake that it is none.
+const FEW: u64 = 100;
+/// The name of a step that was taken for right, and that its formula contradicts.
+const CONTRADICTED: &str = "contradicted";
 
 /// Who computes steps, and how they are judged.
 pub(super) struct Judge {
@@ -192,12 +197,19 @@ fn count(group: &Group, judged: &mut JudgedStep) {
 /// What a judgement makes of a step: what contradicts the review is open.
 fn confirm(step: &mut ShaderStep, judged: JudgedStep) {
     let is_judged = judged.problem.is_none() && judged.random > 0;
+    // Many cases are needed to see that something is not there.
+    let is_seen = judged.is_wrong() || judged.hard_wrong > 0 || judged.random < FEW;
     let told = match step.verdict {
-        StepVerdict::Mistake if is_judged && !judged.is_wrong() => {
-            let random = thousands(judged.random);
-            Some(format!("yet by {} none of {random} random cases shows it", judged.formula))
+        StepVerdict::Mistake if is_judged && !is_seen => {
+            let (wrong, random) = (thousands(judged.random_wrong), thousands(judged.random));
+            let wrong = if judged.random_wrong == 0 { "none".to_owned() } else { format!("only {wrong}") };
+            Some(format!("yet by {} {wrong} of {random} random cases shows it", judged.formula))
         }
-        StepVerdict::Right | StepVerdict::Dialect if judged.is_wrong() => judged.says(),
+        StepVerdict::Right | StepVerdict::Dialect if judged.is_wrong() => {
+            step.name = CONTRADICTED.into();
+            let why = judged.explanation.as_ref().map_or_else(String::new, |why| format!(": {why}"));
+            judged.says().map(|said| said + &why)
+        }
         _ => None,
     };
     if let Some(told) = told {
@@ -261,8 +273,10 @@ mod tests {
         assert_eq!(of(StepVerdict::Right, 0), (StepVerdict::Right, None));
         assert_eq!(of(StepVerdict::Right, 2), (StepVerdict::Right, None));
         assert_eq!(of(StepVerdict::Right, 3), (StepVerdict::Perhaps, Some(wrong.into())));
-        let unseen = "yet by lighting/diffuse-toward none of 256 random cases shows it";
+        let unseen = "yet by lighting/diffuse-toward only 2 of 256 random cases shows it";
         assert_eq!(of(StepVerdict::Mistake, 2), (StepVerdict::Perhaps, Some(unseen.into())));
+        let none = "yet by lighting/diffuse-toward none of 256 random cases shows it";
+        assert_eq!(of(StepVerdict::Mistake, 0), (StepVerdict::Perhaps, Some(none.into())));
         assert_eq!(of(StepVerdict::Mistake, 200), (StepVerdict::Mistake, None));
     }
 }

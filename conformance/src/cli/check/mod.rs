@@ -18,19 +18,20 @@ use lightmeter::document::Document as _;
 use lightmeter::document::report::{Report, Sentence, ShaderReview};
 use lightmeter::files::lines;
 use lightmeter::nearest::did_you_mean;
-use lightmeter::options::MOST_CASES;
 use lightmeter::report::{github, html, junit, sarif};
 use lightmeter_shaders::accepted;
 use std::path::PathBuf;
 
 /// Random cases of a step: mistakes show in as many.
 const CASES: u64 = 256;
+/// More of them show nothing more, and take minutes.
+const MOST_CASES: u64 = 1_000_000;
 
 /// Find the steps of shaders, and what is wrong with them
 ///
 /// A shader is a sum of steps: a Lambert factor, a highlight, an attenuation, fog, a gamma curve. They are found by what they compute, whatever
 /// they are called. Each is right (✓), a dialect that has a name (~), a mistake (✗), or perhaps a mistake (?), where names alone say what a
-/// vector is. Steps that are a formula's are judged as that too, by random and hard cases, to the last bit. The exit code is 1 where a step is wrong, else 2 where a file cannot be read, and 3 where no step is found.
+/// vector is. Steps that are a formula's are judged as that too, by random and hard cases and the intervals of legal values. The exit code is 1 where a step is wrong, else 2 where a file cannot be read, and 3 where no step is found.
 ///
 /// A dialect or a mistake that is intended is accepted by its name: `// lightmeter: accept NAME` behind the step, on the line above it or on
 /// top of the file, or `--accept NAME` for all files. Without FILE, those are checked that `[[shader]]` in `lightmeter.toml` lists.

@@ -70,7 +70,8 @@ fn tell(shader: &ShaderReview, is_strict: bool, text: &mut String) -> std::fmt::
     let reader = if shader.reader == "naga" { String::new() } else { format!(" (read by {})", shader.reader) };
     let steps =
         if shader.steps.is_empty() { "no step that is known".to_owned() } else { number(shader.steps.len(), "step") };
-    let judged: Vec<&JudgedStep> = shader.steps.iter().filter_map(|step| step.judged.as_ref()).collect();
+    let judged: Vec<&JudgedStep> =
+        shader.steps.iter().filter_map(|step| step.judged.as_ref()).filter(|own| own.problem.is_none()).collect();
     let by = |own: &str| if own == "f32" { "in f32".to_owned() } else { format!("on {own}") };
     let judged = judged.first().map_or_else(String::new, |own| format!(", {} judged {}", judged.len(), by(&own.by)));
     writeln!(text, "{}: {}{reader}, {steps}{judged}", shader.file, shader.language)?;
@@ -126,9 +127,7 @@ fn tell_step(step: &ShaderStep, source: &str, width: usize, text: &mut String) -
         writeln!(text, "{}", textwrap::fill(&step.sentence, &options))?;
     }
     // What contradicts the review is in its sentence.
-    if let Some(said) = step.judged.as_ref().and_then(JudgedStep::says)
-        && !step.sentence.contains(&said)
-    {
+    if let Some(said) = step.judged_says() {
         writeln!(text, "{}", textwrap::fill(&said, options))?;
     }
     Ok(())
