@@ -402,6 +402,51 @@ fn a_place_is_no_normal_and_what_makes_a_form_good_is_part_of_it() {
 }
 
 #[test]
+fn a_coefficient_is_not_made_of_the_distance_and_a_sign_may_be_a_constants() {
+    let distance = "float d = length(lightPosition - position);\nfloat lit = max(dot(n, l), 0.0);\n";
+    let of = |name: &str, factor: &str| {
+        body(name, &format!("{distance}color = vec4(material * lightColor * lit * {factor}, 1.0);"))
+            .into_iter()
+            .filter(|step| step.contains("attenuation"))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(of("squared", "(1.0 / (kc + kl * d + kq * d * d))"), ["9 attenuation right"]);
+    assert_eq!(of("cubed", "(1.0 / (kc + kl * d + kq * d * d * d))"), [""; 0]);
+    assert_eq!(of("root", "(1.0 / (kc + kl * sqrt(d) + kq * d * d))"), [""; 0]);
+    // Floors are parts of the coefficients, and a small coefficient is one.
+    let form = |name: &str, factor: &str| {
+        let text = format!("{HEAD}{distance}color = vec4(material * lightColor * lit * {factor}, 1.0);\n}}\n");
+        let found = review(name, &text);
+        let function = found.steps.into_iter().find(|step| step.kind == "attenuation").and_then(|step| step.function);
+        function.map(|own| (own.form, own.wgsl.contains("max("))).unwrap_or_default()
+    };
+    let floors = "(1.0 / (kc + max(kl, 0.03) * d + max(kq, 0.03) * d * d))";
+    assert_eq!(form("floors.frag", floors), ("attenuation".into(), false));
+    let small = "(1.0 / (1.0 + 0.00002 * d + 0.0003 * d * d))";
+    assert_eq!(form("small.frag", small), ("attenuation_one".into(), false));
+    let fog = |name: &str, factor: &str| {
+        body(name, &format!("color = vec4(mix(ambient, material, {factor}), 1.0);"))
+            .into_iter()
+            .filter(|step| step.starts_with("7 fog ") || step.contains("mistake"))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(fog("signed", "exp(-0.05 * length(position))"), ["7 fog right exp"]);
+    assert_eq!(fog("unsigned", "exp(0.05 * length(position))"), ["7 fog mistake fog-exponent-positive"]);
+    let formula = |text: &str| {
+        let found = review("function.frag", &format!("{HEAD}{text}\n}}\n"));
+        found.steps.into_iter().filter_map(|step| step.function.map(|own| own.wgsl)).collect::<Vec<_>>()
+    };
+    // A vector that the step normalises is a unit vector to it, and a constant is a part of it.
+    let functions = formula("color = vec4(lightColor * pow(max(dot(reflect(-l, n), v), 0.0), 32.0), 1.0);");
+    assert!(
+        functions.len() == 1 && functions[0].contains("32.0f") && !functions[0].contains("normalize"),
+        "{functions:?}"
+    );
+    // What is a claim only by its use is none by itself.
+    assert_eq!(formula("color = vec4(material * lightColor * dot(n, l), 1.0);"), [""; 0]);
+}
+
+#[test]
 fn what_has_no_value_is_not_guarded_by_a_limit() {
     let text = |power: &str| {
         format!(

@@ -183,15 +183,15 @@ impl<'a> Finder<'a> {
             let (name, class) = &template.parameters[k];
             matches!(class, Class::Unit | Class::Vector) || matches!(&**name, "d" | "x")
         };
-        let variables: Vec<NodeId> = (0..bound.len()).filter(|k| is_variable(*k)).map(|k| bound[k].id).collect();
-        let is_made = |own: &Bound| {
-            let parts = self.graph.all_of(own.id);
-            variables.iter().any(|id| parts.binary_search(id).is_ok())
-        };
         let is_coefficient = |k: usize| {
             !is_variable(k) && matches!(template.parameters[k].1, Class::Positive | Class::Exponent | Class::Cosine)
         };
-        (0..bound.len()).any(|k| is_coefficient(k) && is_made(&bound[k]))
+        let has = |whole: usize, part: usize| self.graph.all_of(bound[whole].id).binary_search(&bound[part].id).is_ok();
+        let all = || 0..bound.len();
+        // A distance that a coefficient is in is none either.
+        all().filter(|k| is_coefficient(*k) && self.graph.constant_of(bound[*k].id).is_none()).any(|coefficient| {
+            all().filter(|k| is_variable(*k)).any(|own| has(coefficient, own) || has(own, coefficient))
+        })
     }
 
     /// A match with how much speaks for it; none if something speaks against it.
