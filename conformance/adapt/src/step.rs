@@ -71,6 +71,8 @@ const LIT_SUM: &str = "vec4f(la * ma + ld * md * max(dot(unit(normal), unit(-dir
 const POLYNOMIAL: &[Is] = &[is("kc", "kc"), is("kl", "kl"), is("kq", "kq"), made("d", "d")];
 const CONE: &[Is] =
     &[is("l", "l"), is("axis", "axis"), is("cut", "cutoff_cosine"), is("exponent", "exponent"), made("lit", "1.0")];
+const CONE_OF_COLOR: &[Is] = &[is("l", "l"), is("axis", "axis"), is("cut", "cutoff_cosine"), made("lit", "vec3f(1.0)")];
+const CONE_OF_FOUR: &[Is] = &[is("l", "l"), is("axis", "axis"), is("cut", "cutoff_cosine"), made("lit", "vec4f(1.0)")];
 const FOG: &[Is] = &[made("d", "length(p)"), made("x", "length(p)"), is("density", "density")];
 /// A ramp is 0 where fog is thickest.
 const RAMP: &[Is] = &[made("x", "length(p)"), is("start", "dmax"), is("to", "dmin")];
@@ -82,6 +84,9 @@ const MATRIX_TRANSPOSED: &[Is] = &[made("m", "transpose(modelview)"), is("normal
 const MOVING: &str =
     "mat4x4f(vec4f(modelview[0], 0.0), vec4f(modelview[1], 0.0), vec4f(modelview[2], 0.0), vec4f(1.0, 2.0, 3.0, 1.0))";
 const MATRIX_OF_FOUR: &[Is] = &[made("m", MOVING), is("normal", "n")];
+const MATRIX_OF_FOUR_TRANSPOSED: &[Is] = &[made("m", MOVING_TRANSPOSED), is("normal", "n")];
+/// The same from the right of its transpose, whose rows are the columns.
+const MOVING_TRANSPOSED: &str = "transpose(mat4x4f(vec4f(modelview[0], 0.0), vec4f(modelview[1], 0.0), vec4f(modelview[2], 0.0), vec4f(1.0, 2.0, 3.0, 1.0)))";
 const FACTOR: &str = "Fogged(STEP, mix(fog, shaded, STEP))";
 
 const ROWS: &[Row] = &[
@@ -158,8 +163,44 @@ const ROWS: &[Row] = &[
         &[made("d", "d"), made("offset", "vec3f(0.0, d, 0.0)")],
         "STEP",
     ),
+    row(
+        &["inverse_square_of", "inverse_square_given_of"],
+        "attenuation/square",
+        &[made("d", "d"), made("offset", "vec3f(0.0, d, 0.0)"), made("k", "1.0")],
+        "STEP",
+    ),
+    row(
+        &["inverse_square_colored"],
+        "attenuation/square",
+        &[made("offset", "vec3f(0.0, d, 0.0)"), made("color", "vec3f(1.0)")],
+        "STEP.x",
+    ),
+    Row {
+        numbers: &[("kc", 0.0), ("kl", 0.0)],
+        ..row(
+            &["inverse_square_by"],
+            "attenuation/polynomial",
+            &[made("offset", "vec3f(0.0, d, 0.0)"), is("k", "kq")],
+            "STEP",
+        )
+    },
+    Row {
+        numbers: &[("kc", 0.0), ("kl", 0.0)],
+        ..row(
+            &["inverse_square_scaled"],
+            "attenuation/polynomial",
+            &[made("offset", "vec3f(0.0, d, 0.0)"), made("k", "1.0"), is("kq", "kq")],
+            "STEP",
+        )
+    },
+    Row {
+        numbers: &[("kc", 0.0), ("kq", 0.0)],
+        ..row(&["inverse_by"], "attenuation/polynomial", &[made("offset", "vec3f(0.0, d, 0.0)"), is("k", "kl")], "STEP")
+    },
     row(&["inverse"], "attenuation/linear", &[made("offset", "vec3f(0.0, d, 0.0)")], "STEP"),
     row(&["spot_hard", "spot_gate_f32", "spot_turned"], "attenuation/spot-cutoff", CONE, "STEP"),
+    row(&["spot_gate_vec3f"], "attenuation/spot-cutoff", CONE_OF_COLOR, "STEP.x"),
+    row(&["spot_gate_vec4f"], "attenuation/spot-cutoff", CONE_OF_FOUR, "STEP.x"),
     row(&["spot_power", "spot_power_open"], "attenuation/spot-exponent", CONE, "STEP"),
     row(&["fog_exp", "fog_base_two", "fog_positive"], "fog/exp-radial", FOG, FACTOR),
     row(
@@ -171,9 +212,28 @@ const ROWS: &[Row] = &[
     row(&["fog_exp2_document"], "fog/exp2-document-radial", FOG, FACTOR),
     row(&["fog_exp_amount"], "fog/opacity", OPACITY, "STEP"),
     row(&["ramp", "ramp_open", "ramp_above", "ramp_below"], "fog/linear-radial", RAMP, FACTOR),
+    row(
+        &["ramp_width"],
+        "fog/linear-radial",
+        &[made("x", "length(p)"), is("start", "dmax"), made("width", "(dmin - dmax)")],
+        FACTOR,
+    ),
     row(&["normal_by_matrix"], "vector/normal-modelview", MATRIX, "STEP"),
     row(&["normal_by_transpose", "normal_by_transposed"], "vector/normal-modelview", MATRIX_TRANSPOSED, "STEP"),
     row(&["normal_by_upper", "normal_by_part", "normal_moved"], "vector/normal-modelview", MATRIX_OF_FOUR, "STEP"),
+    row(
+        &["normal_by_upper_transposed", "normal_by_part_transposed"],
+        "vector/normal-modelview",
+        MATRIX_OF_FOUR_TRANSPOSED,
+        "STEP",
+    ),
+    row(&["normal_of_four"], "vector/normal-modelview", &[made("m", MOVING), made("normal", "vec4f(n, 0.0)")], "STEP"),
+    row(
+        &["barycentric_vec3f"],
+        "color/per-vertex",
+        &[is("weights", "weights"), is("color", "a"), is("other", "b"), is("third", "c")],
+        "vec4f(STEP, 1.0)",
+    ),
     row(&["srgb_encode_f32"], "color/srgb-encode-component", &[made("color", "c")], "STEP"),
     row(
         &["srgb_encode_vec3f", "srgb_encode_late_vec3f"],

@@ -110,11 +110,13 @@ fn tell_step(step: &ShaderStep, source: &str, width: usize, text: &mut String) -
     let line = (step.line as usize).checked_sub(1).and_then(|k| source.lines().nth(k)).map(str::trim);
     let shown = line.filter(|own| !own.is_empty()).unwrap_or(&step.code);
     let place = if step.line == 0 { String::new() } else { step.line.to_string() };
-    let name = if step.name.is_empty() || step.verdict == StepVerdict::Right {
-        String::new()
-    } else {
-        format!(" {}", step.name)
+    // Of what is right the formula is named by which it is right.
+    let name = match (&step.judged, step.verdict) {
+        (Some(judged), StepVerdict::Right) if judged.problem.is_none() => format!(" {}", judged.formula),
+        (_, StepVerdict::Right) => String::new(),
+        _ => format!(" {}", step.name),
     };
+    let name = name.trim_end();
     let accepted = if step.accepted { " (accepted)" } else { "" };
     let shown = cut(shown, MOST_SOURCE);
     writeln!(text, "{place:>5}  {:<width$}  {shown:<MOST_SOURCE$}  {}{name}{accepted}", step.kind, mark(step.verdict))?;
