@@ -206,7 +206,7 @@ fn checked(slot: &Variable, expression: &str, spec: &Spec) -> Result<(), AdaptEr
     Ok(())
 }
 
-const fn type_of(shape: ValueShape) -> &'static str {
+pub(crate) const fn type_of(shape: ValueShape) -> &'static str {
     match shape {
         ValueShape::Scalar => "f32",
         ValueShape::Vec2 => "vec2f",

@@ -1,6 +1,7 @@
 //! A step of a shader made the function of a formula: what else the formula is of stands around it, right.
 
-use lightmeter_catalogue::cases::{Spec, ValueShape};
+use crate::bind::type_of;
+use lightmeter_catalogue::cases::Spec;
 use lightmeter_document::report::StepFunction;
 use std::fmt::Write as _;
 
@@ -257,17 +258,6 @@ pub fn judged_forms() -> impl Iterator<Item = (&'static str, &'static str)> {
 /// A vector's length made 1, but for that of no length.
 const UNIT: &str = "fn unit(v: vec3f) -> vec3f {\n    return select(normalize(v), vec3f(), all(v == vec3f()));\n}\n";
 
-const fn type_name(shape: ValueShape) -> &'static str {
-    match shape {
-        ValueShape::Scalar => "f32",
-        ValueShape::Vec2 => "vec2f",
-        ValueShape::Vec3 => "vec3f",
-        ValueShape::Vec4 => "vec4f",
-        ValueShape::Mat3 => "mat3x3f",
-        ValueShape::Mat4 => "mat4x4f",
-    }
-}
-
 /// The formula that a step's form is of; none where no formula is.
 #[must_use]
 pub fn formula_of_form(form: &str) -> Option<&'static str> {
@@ -303,16 +293,16 @@ pub fn step_formula(step: &StepFunction, spec: &Spec) -> Option<StepFormula> {
     }
     let mut wgsl = format!("{}\n{UNIT}\n", step.wgsl.trim_end());
     let result = match spec.outputs {
-        [only] => type_name(only.shape).to_owned(),
+        [only] => type_of(only.shape).to_owned(),
         several => {
             let members: String =
-                several.iter().map(|own| format!("    {}: {},\n", own.name, type_name(own.shape))).collect();
+                several.iter().map(|own| format!("    {}: {},\n", own.name, type_of(own.shape))).collect();
             let _ = writeln!(wgsl, "struct Fogged {{\n{members}}}\n");
             "Fogged".into()
         }
     };
     let inputs: Vec<String> =
-        spec.inputs.iter().map(|input| format!("{}: {}", input.name, type_name(input.shape))).collect();
+        spec.inputs.iter().map(|input| format!("{}: {}", input.name, type_of(input.shape))).collect();
     let value = row.value.replace("STEP", "own");
     let _ = writeln!(
         wgsl,

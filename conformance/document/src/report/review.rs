@@ -57,8 +57,6 @@ pub struct StepFunction {
     pub wgsl: String,
     /// The form's parameters, in the order in which the form has them.
     pub parameters: Vec<StepParameter>,
-    /// Components of its value.
-    pub components: u8,
 }
 
 /// A parameter of a form, as a shader has it.

@@ -157,8 +157,7 @@ impl Review<'_> {
             parameters.push(StepParameter { name: name.clone(), is_negated, bits });
         }
         let wgsl = self.graph.wgsl(site.id, &cut, MOST_OPERATIONS)?;
-        let components = u8::try_from(self.graph.ty(site.id).length()).ok()?;
-        Some(StepFunction { form: template.name.clone(), wgsl, parameters, components })
+        Some(StepFunction { form: template.name.clone(), wgsl, parameters })
     }
 
     /// A vector of length 1 that is all that a cone has of a vector.

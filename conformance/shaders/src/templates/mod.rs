@@ -117,19 +117,14 @@ pub(crate) fn functions() -> Result<Vec<(Worth, StepFunction)>, String> {
     let (text, heads) = all()?;
     let mut found = vec![];
     for (line, (form, head)) in text.lines().filter(|line| line.starts_with("fn ")).zip(heads) {
-        let (signature, rest) = line.split_once('(').and_then(|(_, rest)| rest.split_once(')')).ok_or(line)?;
+        let (signature, _) = line.split_once('(').and_then(|(_, rest)| rest.split_once(')')).ok_or(line)?;
         let parameter = |own: &str| {
             let name = own.split(':').next().unwrap_or_default().trim().to_owned();
             StepParameter { name, is_negated: false, bits: vec![] }
         };
         let parameters = signature.split(", ").map(parameter).collect();
-        let components = match rest.trim_start().strip_prefix("-> ").and_then(|own| own.split(' ').next()) {
-            Some("vec3f") => 3,
-            Some("vec4f") => 4,
-            _ => 1,
-        };
         let wgsl = line.replacen(&form, "shader_step", 1);
-        found.push((head.worth, StepFunction { form, wgsl, parameters, components }));
+        found.push((head.worth, StepFunction { form, wgsl, parameters }));
     }
     Ok(found)
 }

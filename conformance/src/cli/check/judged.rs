@@ -179,7 +179,7 @@ fn counted(report: &Report, random: u64, mut judged: JudgedStep) -> JudgedStep {
 
 /// A number with as many digits as f32 has.
 fn short(number: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "as many digits as are told")]
+    #[expect(clippy::cast_possible_truncation, reason = "a message has as many digits as f32")]
     let own = number as f32;
     Number(own.to_string().parse().unwrap_or(number)).to_string()
 }
