@@ -258,17 +258,14 @@ mod tests {
             function: None,
             judged: None,
         };
-        let of = |verdict, random_wrong| {
+        let by = |verdict, random: u64, random_wrong, hard_wrong| {
             let mut own = step(verdict);
-            let judged = JudgedStep {
-                formula: "lighting/diffuse-toward".into(),
-                random: 256,
-                random_wrong,
-                ..JudgedStep::default()
-            };
+            let formula = "lighting/diffuse-toward".into();
+            let judged = JudgedStep { formula, random, random_wrong, hard: 9, hard_wrong, ..JudgedStep::default() };
             confirm(&mut own, judged);
             (own.verdict, own.sentence.split("; ").nth(1).map(str::to_owned))
         };
+        let of = |verdict, random_wrong| by(verdict, 256, random_wrong, 0);
         let wrong = "by lighting/diffuse-toward, 3 of 256 random cases are wrong";
         assert_eq!(of(StepVerdict::Right, 0), (StepVerdict::Right, None));
         assert_eq!(of(StepVerdict::Right, 2), (StepVerdict::Right, None));
@@ -278,5 +275,9 @@ mod tests {
         let none = "yet by lighting/diffuse-toward none of 256 random cases shows it";
         assert_eq!(of(StepVerdict::Mistake, 0), (StepVerdict::Perhaps, Some(none.into())));
         assert_eq!(of(StepVerdict::Mistake, 200), (StepVerdict::Mistake, None));
+        // A hard case shows a mistake too, and few random ones do not show that there is none.
+        assert_eq!(by(StepVerdict::Mistake, 256, 0, 1), (StepVerdict::Mistake, None));
+        assert_eq!(by(StepVerdict::Mistake, 2, 0, 0), (StepVerdict::Mistake, None));
+        assert_eq!(by(StepVerdict::Right, 256, 0, 9), (StepVerdict::Right, None));
     }
 }
